@@ -1,0 +1,557 @@
+/* msr.h - libmsr: mass-spring systems in two dimensions.
+ *
+ *     picture + conf -> scene -> plan -> state -> frames
+ *
+ * A scene says what there is, a plan is a scene compiled once, a state is what moves, and a sink
+ * takes the frames. Forces and integrators are const structs passed by address: one of your own
+ * is used exactly as those of the library are.
+ *
+ * World: x to the right, y up, one unit is one pixel [px], time in seconds [s]; masses, and with
+ * them forces, are in the unit that the conf uses, written [kg] here. Pixel (column c, row r from
+ * the top) of a picture of H rows has its centre at (c + 0.5, H - r - 0.5).
+ *
+ * Errors: what can fail returns a msr_status and fills `err` (may be NULL) with a sentence for the
+ * user; on failure nothing is created and outputs are untouched. The library never prints, never
+ * exits and installs no handler. Who creates frees; freeing NULL does nothing.
+ *
+ * Threads: there is no global state. A scene, a state, a renderer or a sink belongs to one thread
+ * at a time; a plan is immutable and may be shared by any number of states in any number of
+ * threads.
+ *
+ * Option structs are valid when all zero: zero means the default that their fields state.
+ */
+#ifndef MSR_H
+#define MSR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define MSR_API __attribute__((visibility("default")))
+#else
+#define MSR_API
+#endif
+
+#define MSR_VERSION "0.1.0"
+
+/* Version of the library that the program runs with, as MSR_VERSION. */
+MSR_API const char *msr_version(void);
+
+/* ---- Errors ---------------------------------------------------------------------------------- */
+
+#define MSR_STATUSES(X)                                                                            \
+  X(MSR_OK, "success")                                                                             \
+  X(MSR_EIO, "input or output failed")                                                             \
+  X(MSR_ENOMEM, "out of memory")                                                                   \
+  X(MSR_EUSAGE, "wrong argument")                                                                  \
+  X(MSR_EINPUT, "bad picture, conf or scene")                                                      \
+  X(MSR_EUNSTABLE, "the simulation became unstable")                                               \
+  X(MSR_EINTR, "interrupted")
+
+#define MSR_STATUS_NAME(name, text) name,
+typedef enum msr_status { MSR_STATUSES(MSR_STATUS_NAME) } msr_status;
+#undef MSR_STATUS_NAME
+
+enum { MSR_MESSAGE_SIZE = 512 };
+
+/* What went wrong. For a file: `file:line:column: what; what to do`. */
+typedef struct msr_error {
+  msr_status status;
+  char message[MSR_MESSAGE_SIZE]; /* one line, UTF-8, no newline at the end */
+} msr_error;
+
+/* The text of a status, as in MSR_STATUSES. */
+MSR_API const char *msr_status_text(msr_status status);
+
+/* ---- Pictures and confs ---------------------------------------------------------------------- */
+
+/* Colours of a picture, 8 bits a channel, rows from the top. */
+typedef struct msr_picture {
+  size_t width, height;
+  unsigned char *rgb; /* [height][width][3] */
+} msr_picture;
+
+/* A white picture. MSR_ENOMEM; MSR_EUSAGE if a side is 0 or the size overflows. */
+MSR_API msr_status msr_picture_create(size_t width, size_t height, msr_picture **picture,
+                                      msr_error *err);
+
+/* Reads the first image of a PPM file, P3 or P6, maxval 1..65535 (scaled to 0..255, rounded).
+ * `more` (may be NULL) tells whether other images follow it.
+ * MSR_EIO if the file can't be read, MSR_EINPUT if it's no sound PPM. */
+MSR_API msr_status msr_picture_read(const char *path, msr_picture **picture, bool *more,
+                                    msr_error *err);
+
+/* The same from `size` bytes in memory; `name` stands for the file in messages. */
+MSR_API msr_status msr_picture_parse(const char *name, const void *bytes, size_t size,
+                                     msr_picture **picture, bool *more, msr_error *err);
+
+/* Writes a P6 file, maxval 255; it appears whole or not at all. MSR_EIO. */
+MSR_API msr_status msr_picture_write(const msr_picture *picture, const char *path, msr_error *err);
+
+MSR_API void msr_picture_free(msr_picture *picture);
+
+/* What a `.conf` says. */
+typedef struct msr_conf {
+  double dt;           /* DT: duration of an iteration [s], > 0 */
+  double gravity;      /* GRAVITE: acceleration along -y [px/s^2], any sign */
+  double mass;         /* MASSE: of each red pixel [kg], > 0 */
+  double stiffness;    /* TENSION_RESSORT: k of each spring [kg/s^2], >= 0 */
+  uint64_t iterations; /* NB_ITERATIONS: of DT each, <= 2^53 */
+  uint64_t images;     /* NB_IMAGES: frames, 1 .. 10^9, at most one per iteration (1 if none) */
+} msr_conf;
+
+/* Reads a conf: the six names above in that order, each followed by its value on the next line;
+ * blank lines, `#` comments, trailing spaces and CRLF are allowed. MSR_EIO, MSR_EINPUT. */
+MSR_API msr_status msr_conf_read(const char *path, msr_conf *conf, msr_error *err);
+
+/* The same from `size` bytes in memory; `name` stands for the file in messages. */
+MSR_API msr_status msr_conf_parse(const char *name, const char *text, size_t size, msr_conf *conf,
+                                  msr_error *err);
+
+/* ---- What forces see ------------------------------------------------------------------------- */
+
+/* Springs first+s -- first+s+offset, s = 0 .. count-1: a row of a lattice is one run.
+ * Spring s has stiffness k[s*stride] [kg/s^2] and rest length L[s*stride] [px]. */
+typedef struct msr_run_of_springs {
+  size_t first, count;
+  ptrdiff_t offset;
+  const double *k, *L;
+  size_t stride; /* 0: one k and one L for the whole run; 1: k[count], L[count] */
+} msr_run_of_springs;
+
+/* A spring from mass i to the fixed point (x, y) [px]. */
+typedef struct msr_anchor {
+  size_t i;
+  double x, y, k, L;
+} msr_anchor;
+
+/* All springs of a system. */
+typedef struct msr_springs {
+  size_t n, n_runs, n_anchors;   /* n: springs in all runs */
+  const msr_run_of_springs *run; /* [n_runs] */
+  const msr_anchor *anchor;      /* [n_anchors] */
+} msr_springs;
+
+/* A system of n masses at time t, for reading. */
+typedef struct msr_view {
+  size_t n;
+  double t;              /* [s] */
+  const double *x, *y;   /* [n] [px] */
+  const double *vx, *vy; /* [n] [px/s]; NULL in add() of a force that doesn't use velocity */
+  const double *m;       /* mass i is m[i*m_stride] [kg] */
+  size_t m_stride;       /* 0: all masses are equal; 1: m[n] */
+  const msr_springs *springs;
+} msr_view;
+
+/* Mass i [kg]. */
+static inline double msr_view_mass(const msr_view *s, size_t i) { return s->m[i * s->m_stride]; }
+
+/* ---- Forces ---------------------------------------------------------------------------------- */
+
+/* A kind of force. Only name, summary and add are required; NULL, false and 0 do for the rest.
+ * A callback's status other than MSR_OK ends what called it and comes back unchanged.
+ * Each may be called from several threads at once, with different scratch. */
+typedef struct msr_force {
+  const char *name;    /* one word */
+  const char *summary; /* one line: the formula */
+  const char *absent;  /* why a scene may do without: "GRAVITE is 0" (NULL: "not asked for") */
+  bool conservative;   /* energy() is its potential: F = -grad U */
+  bool dissipative;    /* F.v <= 0 always: it can only take energy away */
+  bool uses_velocity;  /* F depends on v */
+  bool uses_time;      /* F depends on t */
+  size_t params_size;  /* bytes that msr_scene_add_force copies */
+  size_t scratch_size; /* bytes of memory of its own in each state, zeroed at first: caches */
+
+  /* Are these parameters valid? */
+  msr_status (*check)(const void *params, msr_error *err);
+  /* Would it do nothing on this system? Then the plan leaves it out. `s` is the system at the
+   * start; the reason goes to `why`, one line. */
+  bool (*idle)(const void *params, const msr_view *s, char *why, size_t size);
+  /* Why it's on, one line, from its parameters: "DRAG = 0.1 kg/s". */
+  void (*describe)(const void *params, const msr_view *s, char *text, size_t size);
+  /* Compiles the parameters for the system `s` at its start. NULL: `self` is the params. */
+  msr_status (*prepare)(const void *params, const msr_view *s, void **self, msr_error *err);
+  void (*release)(void *self); /* frees what prepare made */
+
+  /* Adds the force on each mass to fx, fy [n] [kg px/s^2]. */
+  msr_status (*add)(const void *self, void *scratch, const msr_view *s, double *fx, double *fy);
+  /* For uses_velocity: advances vx, vy [n] by h [s] under this force alone, positions and s->t
+   * held, exactly if it can (no limit of stability then); `backward` asks for the adjoint order
+   * of its parts. NULL: the library takes an explicit midpoint step of add(). */
+  msr_status (*flow)(const void *self, void *scratch, const msr_view *s, double h, bool backward,
+                     double *vx, double *vy);
+  /* Potential energy [kg px^2/s^2]. */
+  double (*energy)(const void *self, const msr_view *s);
+  /* Upper bounds in any state, for the stable step: of the largest eigenvalue of -dF/dx / m
+   * [1/s^2] and of -dF/dv / m [1/s]; both are 0 on entry. */
+  msr_status (*rates)(const void *self, const msr_view *s, double *omega2, double *gamma);
+} msr_force;
+
+/* F_ij = k (|x_ij| - L) x_ij / |x_ij|, 0 at |x_ij| = 0. Every scene has it; no params. */
+MSR_API extern const msr_force msr_force_springs;
+
+/* F = -m g along y; U = m g y. */
+typedef struct msr_gravity {
+  double g; /* [px/s^2] */
+} msr_gravity;
+MSR_API extern const msr_force msr_force_gravity;
+
+/* F = -c v. */
+typedef struct msr_drag {
+  double c; /* [kg/s], >= 0 */
+} msr_drag;
+MSR_API extern const msr_force msr_force_drag;
+
+/* Damping along the springs: F_ij = z (v_ij . n) n, n the spring's direction. */
+typedef struct msr_damping {
+  double z; /* [kg/s], >= 0 */
+} msr_damping;
+MSR_API extern const msr_force msr_force_damping;
+
+/* Random wind, which includes the drag of the air that it moves: F = c (w(t) - v), with
+ * w = (speed, 0) plus an Ornstein-Uhlenbeck process in x and one in y of standard deviation
+ * `gust` and correlation time `gust_time` (Uhlenbeck & Ornstein 1930), drawn from the seed
+ * on a grid of times of its own and interpolated by a spline of degree 7: a function of (seed, t)
+ * alone, the same for every integrator and step. gust = 0 blows steadily and draws nothing. */
+typedef struct msr_wind {
+  double c;         /* drag of the air [kg/s], > 0; 0: the mean mass over 1 s */
+  double speed;     /* mean, along x [px/s], any sign */
+  double gust;      /* [px/s], >= 0 */
+  double gust_time; /* [s], > 0; 0: 1 s */
+  uint64_t seed;
+} msr_wind;
+MSR_API extern const msr_force msr_force_wind;
+
+/* A constant force on one mass; U = -F.(x - x0). */
+typedef struct msr_push {
+  size_t mass;
+  double fx, fy; /* [kg px/s^2] */
+} msr_push;
+MSR_API extern const msr_force msr_force_push;
+
+/* All of the above, then NULL. */
+MSR_API extern const msr_force *const msr_forces[];
+
+/* ---- Integrators ----------------------------------------------------------------------------- */
+
+/* The problem that an integrator solves: q'' = a(t, q, v) in n coordinates.
+ * For a scene of N masses n = 2N, q = x[N], y[N] and v = vx[N], vy[N]. */
+typedef struct msr_system {
+  size_t n;
+  void *self;
+  /* a[n] at (t, q, v). v is NULL only if damp is given: then a leaves out what depends on v. */
+  msr_status (*acceleration)(void *self, double t, const double *q, const double *v, double *a);
+  /* Advances v by h under what depends on v alone, q and t held; backward: in adjoint order.
+   * NULL: a doesn't depend on v. */
+  msr_status (*damp)(void *self, double t, double h, bool backward, const double *q, double *v);
+  /* q += h u, stopped by what is in the way, which reflects v; u may be v.
+   * NULL: nothing is in the way. */
+  msr_status (*drift)(void *self, double h, const double *u, double *q, double *v);
+} msr_system;
+
+/* One step in time: from t to end; h is their difference before rounding. */
+typedef struct msr_interval {
+  double t, h, end;
+} msr_interval;
+
+/* A method. Its declarations are what tests try to refute. */
+typedef struct msr_integrator {
+  const char *name;         /* one word */
+  const char *summary;      /* one line */
+  const char *reference;    /* author, year, place; NULL: none */
+  int order;                /* error ~ h^order at a fixed time */
+  bool symplectic;          /* keeps phase-space area, where a is a gradient and v isn't used */
+  bool reversible;          /* flipping v retraces the path, likewise */
+  bool splits;              /* advances what depends on v by damp(), not through a */
+  double evaluations;       /* of a, per step */
+  double stability;         /* largest stable h*omega for q'' = -omega^2 q; 0: none is */
+  double damping_stability; /* largest stable h*gamma for v' = -gamma v taken through a */
+  size_t vectors;           /* of n doubles of workspace */
+  /* Makes the workspace fit (t, q, v): called before the first step and whenever they have been
+   * changed from outside. NULL: no need. */
+  msr_status (*begin)(const struct msr_integrator *self, const msr_system *system, double t,
+                      const double *q, const double *v, double *work);
+  /* Advances q and v over the interval. */
+  msr_status (*step)(const struct msr_integrator *self, const msr_system *system,
+                     const msr_interval *interval, double *q, double *v, double *work);
+  const void *coefficients; /* of the family's row */
+} msr_integrator;
+
+MSR_API extern const msr_integrator msr_integrator_euler;            /* explicit; for contrast */
+MSR_API extern const msr_integrator msr_integrator_symplectic_euler; /* the assignment's steps */
+MSR_API extern const msr_integrator msr_integrator_verlet;
+MSR_API extern const msr_integrator msr_integrator_rk4;
+
+/* All of the above, then NULL. */
+MSR_API extern const msr_integrator *const msr_integrators[];
+
+/* Steps any system, scene or none: q and v [system->n] from time t by `steps` steps of h.
+ * MSR_ENOMEM, or what the system's callbacks return. */
+MSR_API msr_status msr_integrate(const msr_integrator *integrator, const msr_system *system,
+                                 double t, double h, uint64_t steps, double *q, double *v,
+                                 msr_error *err);
+
+/* ---- Scene: what there is -------------------------------------------------------------------- */
+
+typedef struct msr_scene msr_scene;
+
+typedef struct msr_scene_options {
+  int neighbours;     /* springs to 4 or 8 neighbours; 0: 4 */
+  bool attach;        /* a mass beside a support is tied to it by a spring */
+  bool closed_border; /* the picture's border is a support; else masses may leave */
+} msr_scene_options;
+
+/* A scene with no picture and no mass: gravity 0, DT 0.005 s, one iteration, one image. */
+MSR_API msr_status msr_scene_create(msr_scene **scene, msr_error *err);
+
+/* A scene from a picture (copied) and a conf: one mass per coloured pixel, in reading order,
+ * springs between neighbours, each with its length in the picture as L; black pixels are supports;
+ * gravity if conf->gravity isn't 0. `options` may be NULL. `name` stands for the picture in
+ * messages. MSR_EINPUT for a pixel that is grey or pale (white is 255,255,255, black 0,0,0, and a
+ * mass has channels that differ by 64 or more) or a value of the conf out of its range;
+ * MSR_EUSAGE for options out of range; MSR_ENOMEM. */
+MSR_API msr_status msr_scene_from_picture(const char *name, const msr_picture *picture,
+                                          const msr_conf *conf, const msr_scene_options *options,
+                                          msr_scene **scene, msr_error *err);
+
+/* The same from two files, `.ppm` and `.conf`. */
+MSR_API msr_status msr_scene_load(const char *picture_path, const char *conf_path,
+                                  const msr_scene_options *options, msr_scene **scene,
+                                  msr_error *err);
+
+MSR_API void msr_scene_free(msr_scene *scene);
+
+/* The i-th thing that a user should know about the scene, one line, or NULL past the last. */
+MSR_API const char *msr_scene_warning(const msr_scene *scene, size_t i);
+
+/* Sets DT, the number of iterations and of images; the rest of conf isn't looked at. MSR_EINPUT. */
+MSR_API msr_status msr_scene_set_times(msr_scene *scene, double dt, uint64_t iterations,
+                                       uint64_t images, msr_error *err);
+
+/* Supports: a mass that meets one comes back with `restitution` (0..1, 1 at first) of its normal
+ * speed; Coulomb friction `friction` (>= 0, 0 at first) acts along it. MSR_EUSAGE. */
+MSR_API msr_status msr_scene_set_contact(msr_scene *scene, double restitution, double friction,
+                                         msr_error *err);
+
+typedef struct msr_mass {
+  double x, y;   /* [px] */
+  double vx, vy; /* [px/s] */
+  double m;      /* [kg], > 0 */
+  unsigned char rgb[3];
+} msr_mass;
+
+/* Adds a mass after all others; its number goes to `index` (may be NULL).
+ * MSR_EUSAGE if a value isn't finite, m <= 0 or it is inside a support; MSR_ENOMEM. */
+MSR_API msr_status msr_scene_add_mass(msr_scene *scene, const msr_mass *mass, size_t *index,
+                                      msr_error *err);
+
+/* Adds a spring between masses i and j of stiffness k >= 0 [kg/s^2] and rest length L >= 0 [px].
+ * MSR_EUSAGE, MSR_ENOMEM. */
+MSR_API msr_status msr_scene_add_spring(msr_scene *scene, size_t i, size_t j, double k, double L,
+                                        msr_error *err);
+
+/* Adds a spring between a mass and a fixed point. MSR_EUSAGE, MSR_ENOMEM. */
+MSR_API msr_status msr_scene_add_anchor(msr_scene *scene, const msr_anchor *anchor, msr_error *err);
+
+/* Adds a force, built-in or one's own; the force must outlive the scene and its plans, while
+ * params [force->params_size] (NULL if that is 0) are copied. Forces act in the order in which they
+ * were added; adding a kind twice adds it twice.
+ * What force->check says, MSR_EUSAGE, MSR_ENOMEM. */
+MSR_API msr_status msr_scene_add_force(msr_scene *scene, const msr_force *force, const void *params,
+                                       msr_error *err);
+
+/* Number of masses so far. */
+MSR_API size_t msr_scene_masses(const msr_scene *scene);
+
+/* The mass of a pixel of the picture. MSR_EUSAGE if there is none there. */
+MSR_API msr_status msr_scene_mass_at(const msr_scene *scene, size_t column, size_t row,
+                                     size_t *index, msr_error *err);
+
+/* ---- Plan: a scene compiled ------------------------------------------------------------------ */
+
+typedef struct msr_plan msr_plan;
+
+enum { MSR_SUBSTEPS_OFF = -1 };
+
+typedef struct msr_plan_options {
+  const msr_integrator *integrator; /* NULL: Verlet */
+  int64_t substeps; /* steps per iteration; 0: as many as stability needs; MSR_SUBSTEPS_OFF: one */
+} msr_plan_options;
+
+/* Compiles the scene, which may be freed after. `options` may be NULL.
+ * MSR_EUSAGE, MSR_EINPUT if no number of substeps is enough, MSR_ENOMEM, or what force->prepare
+ * returns. */
+MSR_API msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *options,
+                                   msr_plan **plan, msr_error *err);
+
+MSR_API void msr_plan_free(msr_plan *plan);
+
+/* The i-th thing that a user should know about the plan, or NULL past the last. */
+MSR_API const char *msr_plan_warning(const msr_plan *plan, size_t i);
+
+/* Something that a scene may call for: a force or a contact. */
+typedef struct msr_effect {
+  const char *name;
+  bool on;
+  const char *reason;     /* why it's on, or off; owned by the plan */
+  const msr_force *force; /* NULL: a contact */
+} msr_effect;
+
+/* Every effect: first those that are on, in the order in which they act, then those that are off.
+ * Their number goes to `n`. */
+MSR_API const msr_effect *msr_plan_effects(const msr_plan *plan, size_t *n);
+
+/* The figures of a plan. */
+typedef struct msr_plan_figures {
+  size_t masses, springs, anchors;
+  size_t width, height; /* of the picture [px]; 0: the scene has none */
+  size_t supports;      /* black pixels */
+  const msr_integrator *integrator;
+  uint64_t iterations, images, substeps;
+  double dt;          /* of an iteration [s] */
+  double h;           /* of a step: dt / substeps [s] */
+  double stable_step; /* steps up to this are stable in any state [s]; 0: none; may be INFINITY */
+  double omega;       /* bound of the angular frequencies, in any state [1/s] (Gershgorin) */
+  double gamma;       /* bound of the rates of damping that limit the step [1/s] */
+  size_t plan_bytes, state_bytes; /* of memory */
+} msr_plan_figures;
+MSR_API msr_plan_figures msr_plan_describe(const msr_plan *plan);
+
+/* Iterations done at frame i: i * iterations / images, rounded down. */
+MSR_API uint64_t msr_plan_frame_iteration(const msr_plan *plan, uint64_t frame);
+
+/* The pixel of the picture where a mass began; false if it began at none. */
+MSR_API bool msr_plan_pixel(const msr_plan *plan, size_t mass, size_t *column, size_t *row);
+
+/* ---- State: what moves ----------------------------------------------------------------------- */
+
+typedef struct msr_state msr_state;
+
+/* The state at t = 0. The plan must outlive it. MSR_ENOMEM. */
+MSR_API msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *err);
+
+MSR_API void msr_state_free(msr_state *state);
+
+/* Makes `to` what `from` is; both are of the same plan. */
+MSR_API void msr_state_copy(msr_state *to, const msr_state *from);
+
+/* 64-bit hash of the bits of t, x, y, vx, vy (FNV-1a over 8-byte words); the same on every machine
+ * for the same bits. */
+MSR_API uint64_t msr_state_hash(const msr_state *state);
+
+/* Writes t, x, y, vx, vy and the counts to a file, and reads them back into a state of a plan
+ * of as many masses: what follows has the same bits as if it had never been saved.
+ * MSR_EIO, MSR_EINPUT. */
+MSR_API msr_status msr_state_save(const msr_state *state, const char *path, msr_error *err);
+MSR_API msr_status msr_state_load(msr_state *state, const char *path, msr_error *err);
+
+/* The system as it is; valid until the state steps or is freed. */
+MSR_API msr_view msr_state_view(const msr_state *state);
+
+/* Arrays for a program to change; ask again after every step. */
+typedef struct msr_arrays {
+  double *x, *y, *vx, *vy; /* [masses] */
+} msr_arrays;
+MSR_API msr_arrays msr_state_edit(msr_state *state);
+
+/* Iterations done. */
+MSR_API uint64_t msr_state_iteration(const msr_state *state);
+
+/* Advances by `iterations` of DT. The guard looks at the state every 32 iterations: MSR_EUNSTABLE
+ * names the mass, the time and a step that is stable. Or what a force returns. */
+MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err);
+
+/* The guard: MSR_EUNSTABLE if a number isn't finite or there is far more kinetic and spring energy
+ * than the scene had to give: at the start, by what gravity and pushes lost, by what wind did. */
+MSR_API msr_status msr_state_check(msr_state *state, msr_error *err);
+
+/* Total force on each mass, fx, fy [masses] [kg px/s^2], contacts apart. What a force returns. */
+MSR_API msr_status msr_state_forces(msr_state *state, double *fx, double *fy, msr_error *err);
+
+/* Energies [kg px^2/s^2] and momentum [kg px/s]. */
+typedef struct msr_energy {
+  double kinetic, spring, gravity;
+  double total; /* with the potential of every other conservative force */
+  double px, py;
+  double longest; /* the largest length of a spring over its rest length; 0: no spring */
+} msr_energy;
+MSR_API msr_energy msr_state_energy(const msr_state *state);
+
+/* Times that the code of effect i (of msr_plan_effects) was called, on all masses at once. */
+MSR_API uint64_t msr_state_calls(const msr_state *state, size_t effect);
+
+/* Collisions of masses with supports so far. */
+MSR_API uint64_t msr_state_contacts(const msr_state *state);
+
+/* ---- Frames ---------------------------------------------------------------------------------- */
+
+typedef struct msr_renderer msr_renderer;
+
+typedef struct msr_style {
+  unsigned scale;                 /* pixels of the frame per unit; 0: 1 */
+  unsigned stripes;               /* rows of the scene per stripe; 0: no stripes */
+  unsigned char stripe_colour[3]; /* of every other stripe; all 0: green, 0,160,0 */
+} msr_style;
+
+/* Draws the states of a plan; the plan must outlive it. `style` may be NULL. MSR_EUSAGE if the
+ * scene has no picture or the frame would be too large, MSR_ENOMEM. */
+MSR_API msr_status msr_renderer_create(const msr_plan *plan, const msr_style *style,
+                                       msr_renderer **renderer, msr_error *err);
+
+MSR_API void msr_renderer_free(msr_renderer *renderer);
+
+/* Draws the state: the picture is the renderer's, until it draws again. */
+MSR_API const msr_picture *msr_renderer_draw(msr_renderer *renderer, const msr_state *state);
+
+/* ---- Runs: frames to where they go ----------------------------------------------------------- */
+
+/* What takes the frames of a run; one of your own is used as the library's are. */
+typedef struct msr_sink {
+  void *self;
+  msr_status (*write)(void *self, const msr_state *state, uint64_t frame, msr_error *err);
+  /* Finishes and frees; what was written so far stays and is whole. */
+  msr_status (*close)(void *self, msr_error *err);
+} msr_sink;
+
+/* Frames as binary PPM: DIR/frame-000000.ppm ..., each written whole or not at all; DIR is made.
+ * "-" writes them one after the other to standard output. MSR_EUSAGE if DIR holds frames and
+ * `overwrite` is false; with it, frames that were there are removed first. MSR_EIO, MSR_ENOMEM. */
+MSR_API msr_status msr_frames_open(const msr_plan *plan, const char *dir, const msr_style *style,
+                                   bool overwrite, msr_sink *sink, msr_error *err);
+
+/* CSV with the header frame,time,kinetic,spring,gravity,total,px,py,contacts,longest: energies,
+ * momentum, contacts since the last frame, longest spring over its rest length. "-" is standard
+ * output. MSR_EIO, MSR_ENOMEM. */
+MSR_API msr_status msr_stats_open(const msr_plan *plan, const char *path, msr_sink *sink,
+                                  msr_error *err);
+
+/* NumPy array, float64 [frames, masses, 4]: x, y, vx, vy. MSR_EIO, MSR_ENOMEM. */
+MSR_API msr_status msr_trajectory_open(const msr_plan *plan, const char *path, msr_sink *sink,
+                                       msr_error *err);
+
+/* Closes a sink; an all-zero one is left alone. */
+MSR_API msr_status msr_sink_close(msr_sink *sink, msr_error *err);
+
+typedef struct msr_run_options {
+  const msr_sink *sinks; /* [n_sinks], each given every frame in turn */
+  size_t n_sinks;
+  /* Called before every substep with the state (NULL: none); a status other than MSR_OK ends the
+   * run and comes back unchanged. Running the state again goes on from there. */
+  msr_status (*poll)(void *data, const msr_state *state);
+  void *data;
+} msr_run_options;
+
+/* Runs the state from where it is to the plan's last iteration. Every frame is checked before it
+ * goes to the sinks, which stay open. MSR_EUNSTABLE, or what a force, a sink or poll returns. */
+MSR_API msr_status msr_run(msr_state *state, const msr_run_options *options, msr_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,34 @@
+/* base.h - what every file of the library may use: the public nouns, errors and allocation. */
+#ifndef MSRI_BASE_H
+#define MSRI_BASE_H
+
+#include "msr.h"
+
+#if defined(__GNUC__)
+#define MSRI_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#else
+#define MSRI_PRINTF(text, first)
+#endif
+
+/* Fills err (may be NULL) and returns status. A message too long is cut at MSR_MESSAGE_SIZE. */
+msr_status msri_fail(msr_error *err, msr_status status, const char *format, ...) MSRI_PRINTF(3, 4);
+
+/* calloc with the error filled: NULL on failure and on overflow; count or size 0 gives a block
+ * that free takes. `what` completes "out of memory for ". */
+void *msri_alloc(size_t count, size_t size, const char *what, msr_error *err);
+
+/* A block of elements of `size` bytes that holds at least `count`, from one that holds *capacity
+ * (NULL: 0), which is updated; it grows by doubling and new elements aren't set. NULL on failure,
+ * with the error filled and the old block as it was. */
+void *msri_grow(void *block, size_t *capacity, size_t count, size_t size, const char *what,
+                msr_error *err);
+
+static inline double msri_min(double a, double b) { return a < b ? a : b; }
+static inline double msri_max(double a, double b) { return a > b ? a : b; }
+
+/* The time at a share of an interval; at 1 exactly its end, where the next one begins. */
+static inline double msri_interval_time(const msr_interval *interval, double share) {
+  return share >= 1 ? interval->end : interval->t + share * interval->h;
+}
+
+#endif

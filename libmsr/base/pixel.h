@@ -1,0 +1,29 @@
+/* pixel.h - what the colour of a pixel means. */
+#ifndef MSRI_PIXEL_H
+#define MSRI_PIXEL_H
+
+#include "base/base.h"
+
+typedef enum msri_pixel { MSRI_AIR, MSRI_SUPPORT, MSRI_MASS, MSRI_UNCLEAR } msri_pixel;
+
+/* White is air, black a support, a colour whose channels differ by a quarter of the range a mass.
+ */
+static inline msri_pixel msri_pixel_of(const unsigned char *rgb) {
+  const int r = rgb[0], g = rgb[1], b = rgb[2];
+  const int low = r < g ? (r < b ? r : b) : (g < b ? g : b);
+  const int high = r > g ? (r > b ? r : b) : (g > b ? g : b);
+  if (low == 255) return MSRI_AIR;
+  if (high == 0) return MSRI_SUPPORT;
+  return high - low >= 64 ? MSRI_MASS : MSRI_UNCLEAR;
+}
+
+static inline const unsigned char *msri_pixel_rgb(const msr_picture *picture, size_t column,
+                                                  size_t row) {
+  return picture->rgb + 3 * (row * picture->width + column);
+}
+
+static inline msri_pixel msri_pixel_at(const msr_picture *picture, size_t column, size_t row) {
+  return msri_pixel_of(msri_pixel_rgb(picture, column, row));
+}
+
+#endif

@@ -1,0 +1,112 @@
+/* supports.c - fixed supports: the assignment's rule, swept.
+ *
+ * A mass moves along x, then along y. On each axis every pixel that it would enter is looked at: if
+ * one is a support, the coordinate keeps its old value and the velocity along the axis is reflected
+ * (times the restitution), with Coulomb friction on the other component. The rule is reversible and
+ * keeps phase-space volume where restitution is 1 and friction 0, so that it doesn't heat a lattice
+ * (an exact reflection does); since no pixel on the way is skipped, no speed passes through. */
+#include "contacts/contact.h"
+
+#include "base/pixel.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { WORD = 64 };
+
+/* Solid pixels as bits, rows from the bottom: y is up. */
+typedef struct supports {
+  size_t width, height;
+  msri_supports_options options;
+  uint64_t solid[]; /* [width * height / 64, rounded up] */
+} supports;
+
+/* A line of pixels: bit `start` + `step` * cell, cells 0 .. cells-1; none if the line is outside.
+ */
+typedef struct line {
+  size_t start, step, cells;
+} line;
+
+static bool is_solid(const supports *s, size_t bit) {
+  return s->solid[bit / WORD] >> (bit % WORD) & 1;
+}
+
+static size_t clamp_cell(double cell, size_t cells) {
+  return cell < 0 ? 0 : cell < (double)cells ? (size_t)cell : cells - 1;
+}
+
+/* Is there a support among the cells entered from `from` to `to` (both whole, from != to)? */
+static bool solid_between(const supports *s, const line *along, double from, double to) {
+  const double last = (double)along->cells - 1, step = to > from ? 1 : -1;
+  if (msri_max(from, to) < 0 || msri_min(from, to) > last) return false;
+  const size_t a = clamp_cell(from + step, along->cells), b = clamp_cell(to, along->cells);
+  for (size_t cell = a; cell != b; cell += step > 0 ? 1 : (size_t)-1)
+    if (is_solid(s, along->start + along->step * cell)) return true;
+  return is_solid(s, along->start + along->step * b);
+}
+
+/* Would going from `from` to `to` along an axis of `size` pixels, in the pixel line of the other
+ * coordinate `across` (of `across_size` pixels), meet something? */
+static bool blocked(const supports *s, double from, double to, double across, bool along_x) {
+  const size_t size = along_x ? s->width : s->height;
+  const size_t across_size = along_x ? s->height : s->width;
+  if (!(isfinite(from) && isfinite(to))) return false;
+  if (s->options.closed && (to < 0 || to >= (double)size)) return true;
+  if (!(across >= 0 && across < (double)across_size)) return false;
+  const size_t other = (size_t)across;
+  const line along = along_x ? (line){other * s->width, 1, size} : (line){other, s->width, size};
+  return solid_between(s, &along, floor(from), floor(to));
+}
+
+/* Reflects the normal velocity of a mass that was moving by `way`; friction slows the other. */
+static void reflect(const msri_supports_options *o, double way, double *normal, double *along) {
+  const double before = *normal;
+  if (way * before > 0) *normal = -o->restitution * before;
+  const double most = o->friction * fabs(before - *normal);
+  *along = fabs(*along) > most ? *along - copysign(most, *along) : 0;
+}
+
+static uint64_t move(const void *self, size_t n, double h, const double *u, double *q, double *v) {
+  const supports *s = self;
+  double *x = q, *y = q + n, *vx = v, *vy = v + n;
+  const double *ux = u, *uy = u + n;
+  uint64_t collisions = 0;
+  for (size_t i = 0; i < n; i++) {
+    const double dx = h * ux[i], dy = h * uy[i], to_x = x[i] + dx, to_y = y[i] + dy;
+    if (floor(to_x) != floor(x[i]) && blocked(s, x[i], to_x, y[i], true)) {
+      reflect(&s->options, dx, &vx[i], &vy[i]);
+      collisions++;
+    } else {
+      x[i] = to_x;
+    }
+    if (floor(to_y) != floor(y[i]) && blocked(s, y[i], to_y, x[i], false)) {
+      reflect(&s->options, dy, &vy[i], &vx[i]);
+      collisions++;
+    } else {
+      y[i] = to_y;
+    }
+  }
+  return collisions;
+}
+
+static void mark(supports *s, const msr_picture *picture) {
+  for (size_t row = 0; row < s->height; row++)
+    for (size_t column = 0; column < s->width; column++) {
+      if (msri_pixel_at(picture, column, row) != MSRI_SUPPORT) continue;
+      const size_t bit = (s->height - 1 - row) * s->width + column;
+      s->solid[bit / WORD] |= (uint64_t)1 << (bit % WORD);
+    }
+}
+
+msr_status msri_supports_create(const msr_picture *picture, const msri_supports_options *options,
+                                msri_contact *contact, msr_error *err) {
+  const size_t words = picture->width * picture->height / WORD + 1;
+  supports *s = msri_alloc(1, sizeof *s + words * sizeof *s->solid, "the supports", err);
+  if (!s) return MSR_ENOMEM;
+  s->width = picture->width;
+  s->height = picture->height;
+  s->options = *options;
+  mark(s, picture);
+  *contact = (msri_contact){s, move, free};
+  return MSR_OK;
+}

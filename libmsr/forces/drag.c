@@ -1,0 +1,67 @@
+/* drag.c - drag of air at rest: F = -c v. Its flow is exact: v exp(-c h / m). */
+#include "base/base.h"
+#include "base/number.h"
+
+#include <math.h>
+
+static msr_status check(const void *params, msr_error *err) {
+  const double c = ((const msr_drag *)params)->c;
+  if (isfinite(c) && c >= 0) return MSR_OK;
+  return msri_fail(err, MSR_EUSAGE, "drag must be a finite number of kg/s, 0 or more");
+}
+
+static bool idle(const void *params, const msr_view *s, char *why, size_t size) {
+  const double c = ((const msr_drag *)params)->c;
+  if (c > 0 && s->n > 0) return false;
+  msri_format(why, size, c > 0 ? "there is no mass" : "its coefficient is 0");
+  return true;
+}
+
+static void describe(const void *params, const msr_view *s, char *text, size_t size) {
+  (void)s;
+  msri_format(text, size, "asked for: c = %g kg/s", ((const msr_drag *)params)->c);
+}
+
+static msr_status add(const void *self, void *scratch, const msr_view *s, double *fx, double *fy) {
+  (void)scratch;
+  const double c = ((const msr_drag *)self)->c;
+  for (size_t i = 0; i < s->n; i++) {
+    fx[i] -= c * s->vx[i];
+    fy[i] -= c * s->vy[i];
+  }
+  return MSR_OK;
+}
+
+static msr_status flow(const void *self, void *scratch, const msr_view *s, double h, bool backward,
+                       double *vx, double *vy) {
+  (void)scratch, (void)backward;
+  const double ch = ((const msr_drag *)self)->c * h;
+  double keep = s->n ? exp(-ch / s->m[0]) : 1;
+  for (size_t i = 0; i < s->n; i++) {
+    if (s->m_stride) keep = exp(-ch / s->m[i]);
+    vx[i] *= keep;
+    vy[i] *= keep;
+  }
+  return MSR_OK;
+}
+
+static msr_status rates(const void *self, const msr_view *s, double *omega2, double *gamma) {
+  (void)omega2;
+  for (size_t i = 0; i < s->n; i++)
+    *gamma = msri_max(*gamma, ((const msr_drag *)self)->c / msr_view_mass(s, i));
+  return MSR_OK;
+}
+
+const msr_force msr_force_drag = {
+    .name = "drag",
+    .summary = "F = -c v",
+    .dissipative = true,
+    .uses_velocity = true,
+    .params_size = sizeof(msr_drag),
+    .check = check,
+    .idle = idle,
+    .describe = describe,
+    .add = add,
+    .flow = flow,
+    .rates = rates,
+};

@@ -1,0 +1,32 @@
+/* noise.h - a smooth Ornstein-Uhlenbeck process in two components, as a function of (seed, t). */
+#ifndef MSRI_NOISE_H
+#define MSRI_NOISE_H
+
+#include "base/base.h"
+
+enum { MSRI_NOISE_BLOCK = 1024 };
+
+typedef struct msri_noise {
+  double time;  /* of correlation [s] */
+  double scale; /* of the spline through a chain of variance 1 */
+  uint64_t seed;
+} msri_noise;
+
+/* The process whose components have this standard deviation and correlation time [s]. */
+msri_noise msri_noise_of(double deviation, double time, uint64_t seed);
+
+/* Values on the grid that were drawn last; all zero: none. */
+typedef struct msri_noise_cache {
+  bool filled[2];
+  int64_t block[2];
+  double x[2][MSRI_NOISE_BLOCK], y[2][MSRI_NOISE_BLOCK];
+} msri_noise_cache;
+
+/* Largest |t| over the correlation time at which the process is defined. */
+#define MSRI_NOISE_REACH 1e15
+
+/* The process at time t. The cache only saves time: it never changes the values. */
+void msri_noise_at(const msri_noise *noise, msri_noise_cache *cache, double t, double *x,
+                   double *y);
+
+#endif

@@ -1,0 +1,128 @@
+/* springs.c - linear springs: F_ij = k (|x_ij| - L) x_ij / |x_ij|, U = k (|x_ij| - L)^2 / 2.
+ *
+ * A run of springs is computed block by block into a buffer, which is then added at one end and
+ * taken away at the other: three loops without aliasing, whatever the run's offset, and the same
+ * sum in the same order on every machine. */
+#include "forces/mesh.h"
+
+#include "base/number.h"
+
+#include <math.h>
+
+enum { BLOCK = 256 };
+
+/* Forces of `count` springs from (xi, yi) to (xj, yj); stride is 0 or 1. */
+static inline void tensions(size_t count, const double *xi, const double *yi, const double *xj,
+                            const double *yj, const double *k, const double *L, size_t stride,
+                            double *restrict fx, double *restrict fy) {
+  for (size_t s = 0; s < count; s++) {
+    const double dx = xj[s] - xi[s], dy = yj[s] - yi[s];
+    const double l = sqrt(dx * dx + dy * dy);
+    const double f = k[s * stride] * (l - L[s * stride]) / l;
+    const double safe = l > 0 ? f : 0;
+    fx[s] = safe * dx;
+    fy[s] = safe * dy;
+  }
+}
+
+static void add_block(const msr_view *s, const msr_run_of_springs *run, size_t from, size_t count,
+                      double *fx, double *fy) {
+  double bx[BLOCK], by[BLOCK];
+  const size_t i = run->first + from, j = i + (size_t)run->offset;
+  const double *x = s->x, *y = s->y;
+  if (run->stride)
+    tensions(count, x + i, y + i, x + j, y + j, run->k + from, run->L + from, 1, bx, by);
+  else
+    tensions(count, x + i, y + i, x + j, y + j, run->k, run->L, 0, bx, by);
+  for (size_t n = 0; n < count; n++) fx[i + n] += bx[n];
+  for (size_t n = 0; n < count; n++) fy[i + n] += by[n];
+  for (size_t n = 0; n < count; n++) fx[j + n] -= bx[n];
+  for (size_t n = 0; n < count; n++) fy[j + n] -= by[n];
+}
+
+static void add_anchor(const msr_view *s, const msr_anchor *a, double *fx, double *fy) {
+  double bx, by;
+  tensions(1, s->x + a->i, s->y + a->i, &a->x, &a->y, &a->k, &a->L, 0, &bx, &by);
+  fx[a->i] += bx;
+  fy[a->i] += by;
+}
+
+static msr_status add(const void *self, void *scratch, const msr_view *s, double *fx, double *fy) {
+  (void)self, (void)scratch;
+  for (size_t r = 0; r < s->springs->n_runs; r++) {
+    const msr_run_of_springs *run = &s->springs->run[r];
+    for (size_t from = 0; from < run->count; from += BLOCK) {
+      const size_t left = run->count - from;
+      add_block(s, run, from, left < BLOCK ? left : BLOCK, fx, fy);
+    }
+  }
+  for (size_t a = 0; a < s->springs->n_anchors; a++) add_anchor(s, &s->springs->anchor[a], fx, fy);
+  return MSR_OK;
+}
+
+static double stored(double dx, double dy, double k, double L) {
+  const double e = sqrt(dx * dx + dy * dy) - L;
+  return k * e * e / 2;
+}
+
+static double energy(const void *self, const msr_view *s) {
+  (void)self;
+  double sum = 0;
+  for (size_t r = 0; r < s->springs->n_runs; r++) {
+    const msr_run_of_springs *run = &s->springs->run[r];
+    for (size_t n = 0; n < run->count; n++) {
+      const size_t i = run->first + n, j = i + (size_t)run->offset;
+      sum += stored(s->x[j] - s->x[i], s->y[j] - s->y[i], run->k[n * run->stride],
+                    run->L[n * run->stride]);
+    }
+  }
+  for (size_t n = 0; n < s->springs->n_anchors; n++) {
+    const msr_anchor *a = &s->springs->anchor[n];
+    sum += stored(a->x - s->x[a->i], a->y - s->y[a->i], a->k, a->L);
+  }
+  return sum;
+}
+
+/* Are all stiffnesses 0? */
+static bool slack(const msr_springs *springs) {
+  for (size_t r = 0; r < springs->n_runs; r++) {
+    const msr_run_of_springs *run = &springs->run[r];
+    for (size_t n = 0; n < (run->stride ? run->count : 1); n++)
+      if (run->k[n] > 0) return false;
+  }
+  for (size_t n = 0; n < springs->n_anchors; n++)
+    if (springs->anchor[n].k > 0) return false;
+  return true;
+}
+
+static bool idle(const void *params, const msr_view *s, char *why, size_t size) {
+  (void)params;
+  const bool none = s->springs->n + s->springs->n_anchors == 0;
+  if (!none && !slack(s->springs)) return false;
+  msri_format(why, size,
+              none ? "no two masses are neighbours" : "every stiffness (TENSION_RESSORT) is 0");
+  return true;
+}
+
+static void describe(const void *params, const msr_view *s, char *text, size_t size) {
+  (void)params;
+  const size_t n = s->springs->n, anchors = s->springs->n_anchors;
+  msri_format(text, size, "%zu springs between masses, %zu to fixed points", n, anchors);
+}
+
+static msr_status rates(const void *self, const msr_view *s, double *omega2, double *gamma) {
+  (void)self, (void)gamma;
+  return msri_mesh_bound(s, NULL, omega2);
+}
+
+const msr_force msr_force_springs = {
+    .name = "springs",
+    .summary = "F = k (|x_ij| - L) x_ij / |x_ij|",
+    .absent = "no two masses are neighbours",
+    .conservative = true,
+    .idle = idle,
+    .describe = describe,
+    .add = add,
+    .energy = energy,
+    .rates = rates,
+};

@@ -1,0 +1,122 @@
+/* wind.c - drag of air that moves: F = c (w(t) - v), w a mean wind along x plus random gusts.
+ *
+ * Its flow is exact while w is held: v tends to w as exp(-c h / m). With no gusts, no random number
+ * is ever drawn. */
+#include "forces/noise.h"
+
+#include "base/number.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+typedef struct wind {
+  double c, speed;
+  bool gusts;
+  msri_noise noise;
+} wind;
+
+static msr_status check(const void *params, msr_error *err) {
+  const msr_wind *w = params;
+  const bool finite =
+      isfinite(w->c) && isfinite(w->speed) && isfinite(w->gust) && isfinite(w->gust_time);
+  if (finite && w->c >= 0 && w->gust >= 0 && w->gust_time >= 0) return MSR_OK;
+  return msri_fail(err, MSR_EUSAGE,
+                   "wind: speed must be finite, drag, gust and gust time finite and 0 or more");
+}
+
+static double total_mass(const msr_view *s) {
+  double sum = 0;
+  for (size_t i = 0; i < s->n; i++) sum += msr_view_mass(s, i);
+  return sum;
+}
+
+static double coefficient(const msr_wind *params, const msr_view *s) {
+  return params->c > 0 ? params->c : total_mass(s) / (double)s->n;
+}
+
+static bool idle(const void *params, const msr_view *s, char *why, size_t size) {
+  (void)params;
+  if (s->n > 0) return false;
+  msri_format(why, size, "there is no mass");
+  return true;
+}
+
+static double gust_time(const msr_wind *params) {
+  return params->gust_time > 0 ? params->gust_time : 1;
+}
+
+static void describe(const void *params, const msr_view *s, char *text, size_t size) {
+  const msr_wind *w = params;
+  msri_format(text, size,
+              "asked for: mean %g px/s, gusts %g px/s over %g s, seed %llu; drag c = %g kg/s",
+              w->speed, w->gust, gust_time(w), (unsigned long long)w->seed, coefficient(w, s));
+}
+
+static msr_status prepare(const void *params, const msr_view *s, void **self, msr_error *err) {
+  const msr_wind *of = params;
+  wind *made = msri_alloc(1, sizeof *made, "the wind", err);
+  if (!made) return MSR_ENOMEM;
+  made->c = coefficient(of, s);
+  made->speed = of->speed;
+  made->gusts = of->gust > 0;
+  made->noise = msri_noise_of(of->gust, gust_time(of), of->seed);
+  *self = made;
+  return MSR_OK;
+}
+
+/* The air's velocity at time t. */
+static void air(const wind *w, void *scratch, double t, double *x, double *y) {
+  *x = *y = 0;
+  if (w->gusts) msri_noise_at(&w->noise, scratch, t, x, y);
+  *x += w->speed;
+}
+
+static msr_status add(const void *self, void *scratch, const msr_view *s, double *fx, double *fy) {
+  const wind *w = self;
+  double ax, ay;
+  air(w, scratch, s->t, &ax, &ay);
+  for (size_t i = 0; i < s->n; i++) {
+    fx[i] += w->c * (ax - s->vx[i]);
+    fy[i] += w->c * (ay - s->vy[i]);
+  }
+  return MSR_OK;
+}
+
+static msr_status flow(const void *self, void *scratch, const msr_view *s, double h, bool backward,
+                       double *vx, double *vy) {
+  (void)backward;
+  const wind *w = self;
+  double ax, ay;
+  air(w, scratch, s->t, &ax, &ay);
+  double keep = exp(-w->c * h / s->m[0]);
+  for (size_t i = 0; i < s->n; i++) {
+    if (s->m_stride) keep = exp(-w->c * h / s->m[i]);
+    vx[i] = ax + (vx[i] - ax) * keep;
+    vy[i] = ay + (vy[i] - ay) * keep;
+  }
+  return MSR_OK;
+}
+
+static msr_status rates(const void *self, const msr_view *s, double *omega2, double *gamma) {
+  (void)omega2;
+  for (size_t i = 0; i < s->n; i++)
+    *gamma = msri_max(*gamma, ((const wind *)self)->c / msr_view_mass(s, i));
+  return MSR_OK;
+}
+
+const msr_force msr_force_wind = {
+    .name = "wind",
+    .summary = "F = c (w(t) - v), w random (Ornstein-Uhlenbeck)",
+    .uses_velocity = true,
+    .uses_time = true,
+    .params_size = sizeof(msr_wind),
+    .scratch_size = sizeof(msri_noise_cache),
+    .check = check,
+    .idle = idle,
+    .describe = describe,
+    .prepare = prepare,
+    .release = free,
+    .add = add,
+    .flow = flow,
+    .rates = rates,
+};

@@ -1,0 +1,122 @@
+/* evaluate.c - the problem that an integrator sees: q'' = a(t, q, v) made of the plan's terms, and
+ * a drift that the plan's contact may stop. Each callback runs down the list of what is on. */
+#include "plan/state.h"
+
+#include <string.h>
+
+static bool any(const msr_force *force) { return force->add != NULL; }
+
+static bool without_velocity(const msr_force *force) { return !force->uses_velocity; }
+
+msr_status msri_state_add_forces(msr_state *state, const msr_view *view,
+                                 bool (*wanted)(const msr_force *), double *f) {
+  memset(f, 0, 2 * view->n * sizeof *f);
+  for (size_t i = 0; i < state->plan->n_terms; i++) {
+    const msri_term *term = &state->plan->term[i];
+    if (!wanted(term->force)) continue;
+    state->calls[i]++;
+    const msr_status status =
+        term->force->add(term->self, state->scratch + term->scratch, view, f, f + view->n);
+    if (status != MSR_OK) return status;
+  }
+  return MSR_OK;
+}
+
+/* f[2n] / m. */
+static void divide_by_mass(const msr_view *s, double *f) {
+  if (s->m_stride == 0) {
+    const double m = s->m[0];
+    for (size_t i = 0; i < 2 * s->n; i++) f[i] /= m;
+    return;
+  }
+  for (size_t i = 0; i < s->n; i++) {
+    f[i] /= s->m[i];
+    f[i + s->n] /= s->m[i];
+  }
+}
+
+static msr_status acceleration(void *self, double t, const double *q, const double *v, double *a) {
+  msr_state *state = self;
+  const msr_view view = msri_plan_view(state->plan, t, q, v);
+  const msr_status status = msri_state_add_forces(state, &view, v ? any : without_velocity, a);
+  divide_by_mass(&view, a);
+  return status;
+}
+
+/* v += h F(t, q, v + h/2 F(t, q, v) / m) / m for a force without a flow of its own. */
+static msr_status midpoint(msr_state *state, const msri_term *term, const msr_view *view, double h,
+                           double *v) {
+  const size_t n = view->n;
+  double *f = state->middle, *u = state->middle + 2 * n;
+  memcpy(u, v, 2 * n * sizeof *u);
+  for (int half = 1; half >= 0; half--) {
+    msr_view at = *view;
+    at.vx = u, at.vy = u + n;
+    memset(f, 0, 2 * n * sizeof *f);
+    const msr_status status =
+        term->force->add(term->self, state->scratch + term->scratch, &at, f, f + n);
+    if (status != MSR_OK) return status;
+    divide_by_mass(&at, f);
+    const double step = half ? h / 2 : h;
+    for (size_t i = 0; i < 2 * n; i++) u[i] = v[i] + step * f[i];
+  }
+  memcpy(v, u, 2 * n * sizeof *u);
+  return MSR_OK;
+}
+
+static msr_status damp(void *self, double t, double h, bool backward, const double *q, double *v) {
+  msr_state *state = self;
+  const size_t terms = state->plan->n_terms;
+  const msr_view view = msri_plan_view(state->plan, t, q, v);
+  for (size_t n = 0; n < terms; n++) {
+    const size_t i = backward ? terms - 1 - n : n;
+    const msri_term *term = &state->plan->term[i];
+    if (!term->force->uses_velocity) continue;
+    state->calls[i]++;
+    const msr_status status = term->force->flow
+                                  ? term->force->flow(term->self, state->scratch + term->scratch,
+                                                      &view, h, backward, v, v + view.n)
+                                  : midpoint(state, term, &view, h, v);
+    if (status != MSR_OK) return status;
+  }
+  return MSR_OK;
+}
+
+static msr_status drift(void *self, double h, const double *u, double *q, double *v) {
+  msr_state *state = self;
+  const msr_plan *plan = state->plan;
+  for (size_t e = plan->n_terms; e < plan->n_effects && plan->effect[e].on; e++) state->calls[e]++;
+  state->contacts += plan->contact.move(plan->contact.self, plan->figures.masses, h, u, q, v);
+  return MSR_OK;
+}
+
+static bool damps(const msr_plan *plan) {
+  for (size_t i = 0; i < plan->n_terms; i++)
+    if (plan->term[i].force->uses_velocity) return true;
+  return false;
+}
+
+msr_system msri_state_system(msr_state *state) {
+  return (msr_system){
+      .n = 2 * state->plan->figures.masses,
+      .self = state,
+      .acceleration = acceleration,
+      .damp = damps(state->plan) ? damp : NULL,
+      .drift = state->plan->contact.move ? drift : NULL,
+  };
+}
+
+msr_status msr_state_forces(msr_state *state, double *fx, double *fy, msr_error *err) {
+  const msr_view view = msr_state_view(state);
+  const size_t n = view.n;
+  memset(fx, 0, n * sizeof *fx);
+  memset(fy, 0, n * sizeof *fy);
+  for (size_t i = 0; i < state->plan->n_terms; i++) {
+    const msri_term *term = &state->plan->term[i];
+    const msr_status status =
+        term->force->add(term->self, state->scratch + term->scratch, &view, fx, fy);
+    if (status != MSR_OK)
+      return msri_fail(err, status, "force %s: %s", term->force->name, msr_status_text(status));
+  }
+  return MSR_OK;
+}

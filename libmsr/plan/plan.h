@@ -1,0 +1,76 @@
+/* plan.h - a scene compiled: what the state, the evaluation and the run read. */
+#ifndef MSRI_PLAN_H
+#define MSRI_PLAN_H
+
+#include "base/base.h"
+#include "base/notes.h"
+#include "contacts/contact.h"
+#include "scene/scene.h"
+
+/* A force that the scene calls for, compiled. */
+typedef struct msri_term {
+  const msr_force *force;
+  void *params;     /* the plan's copy */
+  const void *self; /* what prepare made, or params */
+  void *made;       /* what prepare made, for release */
+  size_t scratch;   /* offset into the state's scratch */
+} msri_term;
+
+/* The springs, with the memory that their runs point into. */
+typedef struct msri_mesh {
+  msr_springs springs;
+  msr_run_of_springs *run;
+  msr_anchor *anchor;
+  double *k, *L;       /* [springs added by a program] */
+  double lattice_k;    /* of every spring of the picture */
+  double lattice_L[2]; /* along a side, along a diagonal */
+  size_t run_capacity, anchor_capacity;
+} msri_mesh;
+
+struct msr_plan {
+  msr_plan_figures figures;
+  msr_conf conf;
+  size_t n_picture;
+  msr_picture *picture; /* NULL: none */
+  msr_mass *mass;       /* [figures.masses - n_picture]: those added by a program */
+  double uniform_mass;
+  double *m; /* [figures.masses]; NULL: all are uniform_mass */
+  msri_mesh mesh;
+  msri_term *term; /* [n_terms], in the order in which they act */
+  size_t n_terms;
+  size_t scratch_bytes; /* of all terms */
+  bool midpoint;        /* a force on v has no flow of its own: states have room for one */
+  bool driven; /* a force is neither conservative nor dissipative: states follow its work */
+  msri_contact contact;             /* move NULL: nothing is ever in the way */
+  msr_effect *effect;               /* [n_effects]; the first n_terms are the terms */
+  char (*reason)[MSR_MESSAGE_SIZE]; /* of the effects */
+  size_t n_effects;
+  msri_notes notes;
+};
+
+/* The springs of a scene. On failure nothing is left. MSR_ENOMEM. */
+msr_status msri_mesh_create(const msr_scene *scene, msri_mesh *mesh, msr_error *err);
+void msri_mesh_clear(msri_mesh *mesh);
+
+/* Start of every mass. x, y, vx, vy [masses]. */
+void msri_plan_start(const msr_plan *plan, double *x, double *y, double *vx, double *vy);
+
+/* Colours of all masses, rgb [masses][3]. */
+void msri_plan_colours(const msr_plan *plan, unsigned char *rgb);
+
+/* A view of the plan's masses with the arrays q = x[n], y[n] and v = vx[n], vy[n] (may be NULL). */
+msr_view msri_plan_view(const msr_plan *plan, double t, const double *q, const double *v);
+
+/* "pixel (12,5)" or "mass 7": what a user calls a mass. Returns text. */
+const char *msri_plan_mass_name(const msr_plan *plan, size_t mass, char *text, size_t size);
+
+/* The largest step that the library chooses by itself: below the stable one, for at the limit
+ * rounding is enough to make a mode grow, and half of it where impacts excite every mode (a lattice
+ * that has crumpled heats from 0.8 of the limit on, and doesn't at half of it). */
+double msri_plan_safe_step(const msr_plan *plan);
+
+/* Fills the stable step and the substeps in the figures, and what the user should know of them. */
+msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, int64_t substeps,
+                                 msr_error *err);
+
+#endif

@@ -1,0 +1,150 @@
+/* state.c - making, copying, hashing and reading states. */
+#include "plan/state.h"
+
+#include "forces/mesh.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Memory */
+
+/* Where each array lies in the block, in bytes; `bytes` is the whole. */
+typedef struct layout {
+  size_t q, v, work, middle, drive, scratch, calls, bytes;
+} layout;
+
+static size_t reserve(size_t *end, size_t bytes) {
+  enum { ALIGNMENT = 64 };
+  const size_t begin = *end;
+  *end = (begin + bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+  return begin;
+}
+
+static layout lay_out(const msr_plan *plan) {
+  const size_t vector = 2 * plan->figures.masses * sizeof(double);
+  layout l;
+  size_t end = 0;
+  reserve(&end, sizeof(msr_state));
+  l.q = reserve(&end, vector);
+  l.v = reserve(&end, vector);
+  l.work = reserve(&end, plan->figures.integrator->vectors * vector);
+  l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
+  l.drive = reserve(&end, plan->driven ? 3 * vector : 0);
+  l.scratch = reserve(&end, plan->scratch_bytes);
+  l.calls = reserve(&end, plan->n_effects * sizeof(uint64_t));
+  l.bytes = end;
+  return l;
+}
+
+size_t msri_state_bytes(const msr_plan *plan) { return lay_out(plan).bytes; }
+
+msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *err) {
+  const layout l = lay_out(plan);
+  char *block = msri_alloc(1, l.bytes, "a state", err);
+  if (!block) return MSR_ENOMEM;
+  msr_state *made = (void *)block;
+  *made = (msr_state){
+      .plan = plan,
+      .q = (void *)(block + l.q),
+      .v = (void *)(block + l.v),
+      .work = (void *)(block + l.work),
+      .middle = (void *)(block + l.middle),
+      .drive = (void *)(block + l.drive),
+      .scratch = block + l.scratch,
+      .calls = (void *)(block + l.calls),
+  };
+  const size_t n = plan->figures.masses;
+  msri_plan_start(plan, made->q, made->q + n, made->v, made->v + n);
+  *state = made;
+  return MSR_OK;
+}
+
+void msr_state_free(msr_state *state) { free(state); }
+
+void msr_state_copy(msr_state *to, const msr_state *from) {
+  const layout l = lay_out(from->plan);
+  to->iteration = from->iteration;
+  to->substep = from->substep;
+  to->t = from->t;
+  to->fresh = from->fresh;
+  to->contacts = from->contacts;
+  to->guard = from->guard;
+  memcpy((char *)to + l.q, (const char *)from + l.q, l.bytes - l.q);
+}
+
+void msri_state_touched(msr_state *state) {
+  state->fresh = false;
+  state->guard.begun = false;
+}
+
+/* ---- Reading */
+
+static uint64_t hash_doubles(uint64_t hash, const double *values, size_t n) {
+  for (size_t i = 0; i < n; i++) {
+    uint64_t word;
+    memcpy(&word, &values[i], sizeof word);
+    hash = (hash ^ word) * 0x100000001b3U;
+  }
+  return hash;
+}
+
+uint64_t msr_state_hash(const msr_state *state) {
+  const size_t n = state->plan->figures.masses;
+  uint64_t hash = hash_doubles(0xcbf29ce484222325U, &state->t, 1);
+  hash = hash_doubles(hash, state->q, 2 * n);
+  return hash_doubles(hash, state->v, 2 * n);
+}
+
+msr_view msr_state_view(const msr_state *state) {
+  return msri_plan_view(state->plan, state->t, state->q, state->v);
+}
+
+msr_arrays msr_state_edit(msr_state *state) {
+  const size_t n = state->plan->figures.masses;
+  msri_state_touched(state);
+  return (msr_arrays){state->q, state->q + n, state->v, state->v + n};
+}
+
+uint64_t msr_state_iteration(const msr_state *state) { return state->iteration; }
+
+uint64_t msr_state_contacts(const msr_state *state) { return state->contacts; }
+
+uint64_t msr_state_calls(const msr_state *state, size_t effect) {
+  return effect < state->plan->n_effects ? state->calls[effect] : 0;
+}
+
+/* ---- Energy */
+
+static double kinetic(const msr_view *s) {
+  double sum = 0;
+  for (size_t i = 0; i < s->n; i++)
+    sum += msr_view_mass(s, i) * (s->vx[i] * s->vx[i] + s->vy[i] * s->vy[i]);
+  return sum / 2;
+}
+
+/* Potential of the terms of one kind, or of all kinds (NULL). */
+static double potential(const msr_plan *plan, const msr_view *s, const msr_force *kind) {
+  double sum = 0;
+  for (size_t i = 0; i < plan->n_terms; i++) {
+    const msri_term *term = &plan->term[i];
+    if (term->force->energy && (!kind || term->force == kind))
+      sum += term->force->energy(term->self, s);
+  }
+  return sum;
+}
+
+msr_energy msr_state_energy(const msr_state *state) {
+  const msr_view s = msr_state_view(state);
+  msr_energy e = {
+      .kinetic = kinetic(&s),
+      .spring = potential(state->plan, &s, &msr_force_springs),
+      .gravity = potential(state->plan, &s, &msr_force_gravity),
+      .longest = msri_mesh_longest(&s),
+  };
+  e.total = e.kinetic + potential(state->plan, &s, NULL);
+  for (size_t i = 0; i < s.n; i++) {
+    e.px += msr_view_mass(&s, i) * s.vx[i];
+    e.py += msr_view_mass(&s, i) * s.vy[i];
+  }
+  return e;
+}

@@ -1,0 +1,110 @@
+/* frames.c - the sink that draws every frame as a binary PPM: one file each in a directory, or one
+ * after the other on standard output. */
+#include "base/file.h"
+#include "base/number.h"
+#include "formats/ppm.h"
+#include "plan/state.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { NAME_SIZE = 32 }; /* of "/frame-000000.ppm" */
+
+typedef struct frames {
+  msr_renderer *renderer;
+  msri_file stream; /* of a run to standard output */
+  size_t directory; /* length of the directory's name; 0: to standard output */
+  char path[];      /* directory, then the frame's name */
+} frames;
+
+/* ---- The directory */
+
+/* frame-, six digits or more, .ppm */
+static bool is_frame(const char *name) {
+  static const char stem[] = "frame-";
+  const size_t length = sizeof stem - 1;
+  if (strncmp(name, stem, length) != 0) return false;
+  const size_t digits = strspn(name + length, "0123456789");
+  return digits >= 6 && strcmp(name + length + digits, ".ppm") == 0;
+}
+
+/* Makes a directory and those above it. */
+static msr_status make_directory(char *path, msr_error *err) {
+  for (char *end = path + 1;; end++) {
+    if (*end != '/' && *end != '\0') continue;
+    const char was = *end;
+    *end = '\0';
+    const bool made = mkdir(path, 0777) == 0 || errno == EEXIST;
+    *end = was;
+    if (!made) return msri_file_fail(path, "make", err);
+    if (was == '\0') return MSR_OK;
+  }
+}
+
+/* Removes the frames of a directory, or refuses if there are any. */
+static msr_status clear_frames(frames *f, bool overwrite, msr_error *err) {
+  DIR *directory = opendir(f->path);
+  if (!directory) return msri_file_fail(f->path, "open", err);
+  msr_status status = MSR_OK;
+  for (struct dirent *entry; status == MSR_OK && (entry = readdir(directory)) != NULL;) {
+    if (!is_frame(entry->d_name)) continue;
+    if (!overwrite)
+      status = msri_fail(err, MSR_EUSAGE,
+                         "%s: frames are there already; name another directory, "
+                         "or use --force to replace them",
+                         f->path);
+    else if (unlinkat(dirfd(directory), entry->d_name, 0) != 0)
+      status = msri_file_fail(f->path, "empty", err);
+  }
+  closedir(directory);
+  return status;
+}
+
+/* ---- The sink */
+
+static msr_status take(void *self, const msr_state *state, uint64_t frame, msr_error *err) {
+  frames *f = self;
+  const msr_picture *picture = msr_renderer_draw(f->renderer, state);
+  if (f->directory == 0) {
+    const bool written = msri_ppm_write(f->stream.stream, picture);
+    return written ? msri_file_flush(&f->stream, err) : msri_file_fail("-", "write", err);
+  }
+  msri_format(f->path + f->directory, NAME_SIZE, "/frame-%06llu.ppm", (unsigned long long)frame);
+  return msr_picture_write(picture, f->path, err);
+}
+
+static msr_status finish(void *self, msr_error *err) {
+  frames *f = self;
+  const msr_status status = f->directory == 0 ? msri_file_commit(&f->stream, err) : MSR_OK;
+  msr_renderer_free(f->renderer);
+  free(f);
+  return status;
+}
+
+static msr_status open_place(frames *f, const char *dir, bool overwrite, msr_error *err) {
+  if (strcmp(dir, "-") == 0) return msri_file_create("/dev/stdout", &f->stream, err);
+  f->directory = strlen(dir);
+  memcpy(f->path, dir, f->directory + 1);
+  const msr_status status = make_directory(f->path, err);
+  return status == MSR_OK ? clear_frames(f, overwrite, err) : status;
+}
+
+msr_status msr_frames_open(const msr_plan *plan, const char *dir, const msr_style *style,
+                           bool overwrite, msr_sink *sink, msr_error *err) {
+  if (*dir == '\0') return msri_fail(err, MSR_EUSAGE, "the frames' directory needs a name");
+  frames *f = msri_alloc(1, sizeof *f + strlen(dir) + NAME_SIZE, "the frames", err);
+  if (!f) return MSR_ENOMEM;
+  msr_status status = msr_renderer_create(plan, style, &f->renderer, err);
+  if (status == MSR_OK) status = open_place(f, dir, overwrite, err);
+  if (status == MSR_OK) {
+    *sink = (msr_sink){f, take, finish};
+    return MSR_OK;
+  }
+  msr_renderer_free(f->renderer);
+  free(f);
+  return status;
+}

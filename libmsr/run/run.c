@@ -1,0 +1,40 @@
+/* run.c - a whole run: iterations up to each frame, the guard, then the sinks. */
+#include "run/step.h"
+
+static msr_status deliver(msr_state *state, const msr_run_options *options, uint64_t frame,
+                          msr_error *err) {
+  msr_status status = msr_state_check(state, err);
+  for (size_t s = 0; s < options->n_sinks && status == MSR_OK; s++)
+    status = options->sinks[s].write(options->sinks[s].self, state, frame, err);
+  return status;
+}
+
+/* Steps up to an iteration, if it's still to come. */
+static msr_status step_to(msr_state *state, uint64_t iteration, const msri_poll *poll,
+                          msr_error *err) {
+  return state->iteration < iteration ? msri_step(state, iteration - state->iteration, poll, err)
+                                      : MSR_OK;
+}
+
+msr_status msr_run(msr_state *state, const msr_run_options *options, msr_error *err) {
+  static const msr_run_options none = {0};
+  if (!options) options = &none;
+  const msr_plan *plan = state->plan;
+  const msri_poll poll = {options->poll, options->data};
+  msr_status status = MSR_OK;
+  for (uint64_t frame = 0; frame < plan->conf.images && status == MSR_OK; frame++) {
+    const uint64_t due = msr_plan_frame_iteration(plan, frame);
+    if (due < state->iteration) continue;
+    status = step_to(state, due, &poll, err);
+    if (status == MSR_OK) status = deliver(state, options, frame, err);
+  }
+  if (status == MSR_OK) status = step_to(state, plan->conf.iterations, &poll, err);
+  return status == MSR_OK ? msr_state_check(state, err) : status;
+}
+
+msr_status msr_sink_close(msr_sink *sink, msr_error *err) {
+  if (!sink->close) return MSR_OK;
+  const msr_status status = sink->close(sink->self, err);
+  *sink = (msr_sink){0};
+  return status;
+}

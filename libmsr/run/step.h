@@ -1,0 +1,16 @@
+/* step.h - stepping a state with a say for whoever watches. */
+#ifndef MSRI_STEP_H
+#define MSRI_STEP_H
+
+#include "plan/state.h"
+
+/* Called before every substep, if there is one. */
+typedef struct msri_poll {
+  msr_status (*call)(void *data, const msr_state *state);
+  void *data;
+} msri_poll;
+
+/* As msr_state_step. What poll returns, other than MSR_OK, ends it and comes back unchanged. */
+msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *poll, msr_error *err);
+
+#endif

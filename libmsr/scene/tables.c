@@ -1,0 +1,20 @@
+/* tables.c - the built-in forces and integrators: a new one is a row here. */
+#include "base/base.h"
+
+const msr_force *const msr_forces[] = {
+    &msr_force_springs,
+    &msr_force_gravity,
+    &msr_force_damping,
+    &msr_force_drag,
+    &msr_force_wind,
+    &msr_force_push,
+    NULL,
+};
+
+const msr_integrator *const msr_integrators[] = {
+    &msr_integrator_euler,
+    &msr_integrator_symplectic_euler,
+    &msr_integrator_verlet,
+    &msr_integrator_rk4,
+    NULL,
+};
