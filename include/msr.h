@@ -415,7 +415,8 @@ typedef struct msr_plan_figures {
   uint64_t iterations, images, substeps;
   double dt;          /* of an iteration [s] */
   double h;           /* of a step: dt / substeps [s] */
-  double stable_step; /* steps up to this are stable in any state [s]; 0: none; may be INFINITY */
+  double stable_step; /* steps below this are stable in any state [s]; 0: none; may be INFINITY */
+  double safe_step;   /* the library's own steps are no larger: 0.9 of it, 0.5 with contacts */
   double omega;       /* bound of the angular frequencies, in any state [1/s] (Gershgorin) */
   double gamma;       /* bound of the rates of damping that limit the step [1/s] */
   size_t plan_bytes, state_bytes; /* of memory */

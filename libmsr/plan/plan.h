@@ -64,11 +64,6 @@ msr_view msri_plan_view(const msr_plan *plan, double t, const double *q, const d
 /* "pixel (12,5)" or "mass 7": what a user calls a mass. Returns text. */
 const char *msri_plan_mass_name(const msr_plan *plan, size_t mass, char *text, size_t size);
 
-/* The largest step that the library chooses by itself: below the stable one, for at the limit
- * rounding is enough to make a mode grow, and half of it where impacts excite every mode (a lattice
- * that has crumpled heats from 0.8 of the limit on, and doesn't at half of it). */
-double msri_plan_safe_step(const msr_plan *plan);
-
 /* Fills the stable step and the substeps in the figures, and what the user should know of them. */
 msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, int64_t substeps,
                                  msr_error *err);

@@ -82,14 +82,12 @@ static size_t culprit(const msr_view *s) {
 }
 
 /* What to do: a step that is stable, in the user's terms. */
-static void advise(const msr_plan *plan, char *text, size_t size) {
-  const msr_plan_figures *f = &plan->figures;
-  const double stable = msri_plan_safe_step(plan);
+static void advise(const msr_plan_figures *f, char *text, size_t size) {
   if (f->integrator->stability == 0)
     msri_format(text, size, "%s is stable for no step; use verlet", f->integrator->name);
-  else if (f->h > stable)
-    msri_format(text, size, "DT %.3g or %.0f substeps would have worked", stable,
-                ceil(f->dt / stable));
+  else if (f->h > f->safe_step)
+    msri_format(text, size, "DT %.3g or %.0f substeps would have worked", f->safe_step,
+                ceil(f->dt / f->safe_step));
   else
     msri_format(text, size, "the step is below the limit of stability, %.3g s: try %llu substeps",
                 f->stable_step, (unsigned long long)(2 * f->substeps));
@@ -98,7 +96,7 @@ static void advise(const msr_plan *plan, char *text, size_t size) {
 static msr_status refuse(const msr_state *state, double ratio, msr_error *err) {
   const msr_view view = msr_state_view(state);
   char mass[64], advice[160];
-  advise(state->plan, advice, sizeof advice);
+  advise(&state->plan->figures, advice, sizeof advice);
   msri_plan_mass_name(state->plan, culprit(&view), mass, sizeof mass);
   return msri_fail(err, MSR_EUNSTABLE,
                    "unstable at iteration %llu, t = %g s: %s has run away, with %.3g times the "
