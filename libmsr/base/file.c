@@ -18,13 +18,10 @@ static const struct advice {
   int number;
   const char *text;
 } advices[] = {
-    {ENOENT, "check its name"},
-    {ENOTDIR, "check its name"},
-    {ENAMETOOLONG, "shorten its name"},
-    {EACCES, "check its permissions"},
-    {EISDIR, "give a file, not a directory"},
-    {ENOSPC, "free some space"},
-    {EPIPE, "what should read it has ended"},
+    {ENOENT, "check its name"},          {ENOTDIR, "check its name"},
+    {ENAMETOOLONG, "shorten its name"},  {EACCES, "check its permissions"},
+    {EBADF, "check its name"},           {EISDIR, "give a file, not a directory"},
+    {ENOSPC, "free some space"},         {EPIPE, "what should read it has ended"},
     {0, "check the disk or the device"},
 };
 
@@ -35,6 +32,14 @@ msr_status msri_file_fail(const char *path, const char *verb, msr_error *err) {
   const struct advice *advice = advices;
   while (advice->number != 0 && advice->number != number) advice++;
   return msri_fail(err, MSR_EIO, "%s: cannot %s it: %s; %s", path, verb, reason, advice->text);
+}
+
+/* open(2); one that waits, as for the other end of a pipe, goes on waiting after a signal. */
+static int open_file(const char *path, int flags) {
+  int fd;
+  do fd = open(path, flags | O_CLOEXEC | O_NOCTTY, 0666);
+  while (fd < 0 && errno == EINTR);
+  return fd;
 }
 
 /* ---- Reading */
@@ -92,7 +97,7 @@ static msr_status read_all(input *in, size_t limit, msri_file_accept *accept, ms
 
 msr_status msri_file_read_if(const char *path, size_t limit, msri_file_accept *accept,
                              unsigned char **bytes, size_t *size, msr_error *err) {
-  input in = {.path = path, .fd = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY)};
+  input in = {.path = path, .fd = open_file(path, O_RDONLY)};
   if (in.fd < 0) return msri_file_fail(path, "read", err);
   const msr_status status = read_all(&in, limit, accept, err);
   close(in.fd);
@@ -131,7 +136,7 @@ static int open_direct(const char *path, mode_t *mode) {
   struct stat st;
   const int standing = standing_for(path);
   if (standing >= 0) return fcntl(standing, F_DUPFD_CLOEXEC, 0);
-  const int fd = open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY);
+  const int fd = open_file(path, O_WRONLY);
   if (fd < 0 || fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) return fd;
   close(fd);
   *mode = st.st_mode;
@@ -148,7 +153,7 @@ static int open_temporary(const msri_file *file, mode_t mode) {
   errno = EEXIST;
   for (unsigned i = 0; fd < 0 && errno == EEXIST; i++) {
     snprintf(name, TEMPORARY_SIZE, ".msr-%ld-%u.tmp", (long)getpid(), i);
-    fd = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    fd = open_file(file->temporary, O_WRONLY | O_CREAT | O_EXCL);
   }
   if (fd < 0) *file->temporary = '\0';
   if (fd >= 0 && mode) (void)fchmod(fd, mode & 0777);
@@ -188,9 +193,9 @@ static msr_status open_stream(msri_file *file, int fd, mode_t mode, msr_error *e
 
 msr_status msri_file_create(const char *path, msri_file *file, msr_error *err) {
   mode_t mode = 0;
-  int fd = open_direct(path, &mode);
-  if (fd < 0 && !mode && errno != ENOENT) return msri_file_fail(path, "write", err);
   *file = (msri_file){.stream = NULL};
+  const int fd = open_direct(path, &mode);
+  if (fd < 0 && !mode && errno != ENOENT) return msri_file_fail(path, "write", err);
   char *target = mode ? realpath(path, NULL) : NULL;
   msr_status status = name_file(file, path, target ? target : path, err);
   free(target);

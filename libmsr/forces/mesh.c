@@ -33,7 +33,9 @@ msr_status msri_mesh_bound(const msr_view *s, const double *weight, double *boun
   return MSR_OK;
 }
 
-static double stretch(double dx, double dy, double L) { return L > 0 ? hypot(dx, dy) / L : 0; }
+static double stretch(double dx, double dy, double L) {
+  return L > 0 ? sqrt(dx * dx + dy * dy) / L : 0;
+}
 
 double msri_mesh_longest(const msr_view *s) {
   double longest = 0;

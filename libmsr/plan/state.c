@@ -122,26 +122,24 @@ static double kinetic(const msr_view *s) {
   return sum / 2;
 }
 
-/* Potential of the terms of one kind, or of all kinds (NULL). */
-static double potential(const msr_plan *plan, const msr_view *s, const msr_force *kind) {
-  double sum = 0;
-  for (size_t i = 0; i < plan->n_terms; i++) {
-    const msri_term *term = &plan->term[i];
-    if (term->force->energy && (!kind || term->force == kind))
-      sum += term->force->energy(term->self, s);
+msr_energy msri_state_energies(const msr_state *state) {
+  const msr_view s = msr_state_view(state);
+  msr_energy e = {.kinetic = kinetic(&s)};
+  e.total = e.kinetic;
+  for (size_t i = 0; i < state->plan->n_terms; i++) {
+    const msri_term *term = &state->plan->term[i];
+    const double potential = term->force->energy ? term->force->energy(term->self, &s) : 0;
+    e.total += potential;
+    if (term->force == &msr_force_springs) e.spring += potential;
+    if (term->force == &msr_force_gravity) e.gravity += potential;
   }
-  return sum;
+  return e;
 }
 
 msr_energy msr_state_energy(const msr_state *state) {
   const msr_view s = msr_state_view(state);
-  msr_energy e = {
-      .kinetic = kinetic(&s),
-      .spring = potential(state->plan, &s, &msr_force_springs),
-      .gravity = potential(state->plan, &s, &msr_force_gravity),
-      .longest = msri_mesh_longest(&s),
-  };
-  e.total = e.kinetic + potential(state->plan, &s, NULL);
+  msr_energy e = msri_state_energies(state);
+  e.longest = msri_mesh_longest(&s);
   for (size_t i = 0; i < s.n; i++) {
     e.px += msr_view_mass(&s, i) * s.vx[i];
     e.py += msr_view_mass(&s, i) * s.vy[i];

@@ -37,6 +37,9 @@ msr_system msri_state_system(msr_state *state);
 msr_status msri_state_add_forces(msr_state *state, const msr_view *view,
                                  bool (*wanted)(const msr_force *), double *f);
 
+/* As msr_state_energy, without momentum and the longest spring. */
+msr_energy msri_state_energies(const msr_state *state);
+
 /* Tells that q, v or t were changed from outside. */
 void msri_state_touched(msr_state *state);
 

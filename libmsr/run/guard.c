@@ -21,7 +21,7 @@ typedef struct energies {
 } energies;
 
 static energies energies_of(const msr_state *state) {
-  const msr_energy e = msr_state_energy(state);
+  const msr_energy e = msri_state_energies(state);
   return (energies){e.kinetic + e.spring, e.total - e.kinetic - e.spring};
 }
 
