@@ -11,10 +11,15 @@
 
 enum { BLOCK = 256 };
 
-/* Forces of `count` springs from (xi, yi) to (xj, yj); stride is 0 or 1. */
-static inline void tensions(size_t count, const double *xi, const double *yi, const double *xj,
-                            const double *yj, const double *k, const double *L, size_t stride,
-                            double *restrict fx, double *restrict fy) {
+/* Where springs begin and end: [count] each. */
+typedef struct ends {
+  const double *xi, *yi, *xj, *yj;
+} ends;
+
+/* Forces on the beginnings of `count` springs; stride is 0 or 1. */
+static inline void tensions(size_t count, const ends *e, const double *k, const double *L,
+                            size_t stride, double *restrict fx, double *restrict fy) {
+  const double *xi = e->xi, *yi = e->yi, *xj = e->xj, *yj = e->yj;
   for (size_t s = 0; s < count; s++) {
     const double dx = xj[s] - xi[s], dy = yj[s] - yi[s];
     const double l = sqrt(dx * dx + dy * dy);
@@ -29,11 +34,11 @@ static void add_block(const msr_view *s, const msr_run_of_springs *run, size_t f
                       double *fx, double *fy) {
   double bx[BLOCK], by[BLOCK];
   const size_t i = run->first + from, j = i + (size_t)run->offset;
-  const double *x = s->x, *y = s->y;
+  const ends e = {s->x + i, s->y + i, s->x + j, s->y + j};
   if (run->stride)
-    tensions(count, x + i, y + i, x + j, y + j, run->k + from, run->L + from, 1, bx, by);
+    tensions(count, &e, run->k + from, run->L + from, 1, bx, by);
   else
-    tensions(count, x + i, y + i, x + j, y + j, run->k, run->L, 0, bx, by);
+    tensions(count, &e, run->k, run->L, 0, bx, by);
   for (size_t n = 0; n < count; n++) fx[i + n] += bx[n];
   for (size_t n = 0; n < count; n++) fy[i + n] += by[n];
   for (size_t n = 0; n < count; n++) fx[j + n] -= bx[n];
@@ -42,7 +47,8 @@ static void add_block(const msr_view *s, const msr_run_of_springs *run, size_t f
 
 static void add_anchor(const msr_view *s, const msr_anchor *a, double *fx, double *fy) {
   double bx, by;
-  tensions(1, s->x + a->i, s->y + a->i, &a->x, &a->y, &a->k, &a->L, 0, &bx, &by);
+  const ends e = {s->x + a->i, s->y + a->i, &a->x, &a->y};
+  tensions(1, &e, &a->k, &a->L, 0, &bx, &by);
   fx[a->i] += bx;
   fy[a->i] += by;
 }

@@ -63,7 +63,7 @@ static msr_status add_term(msr_plan *plan, const msr_force *force, const void *p
   term->params = msri_alloc(1, force->params_size, "a force", err);
   if (!term->params) return MSR_ENOMEM;
   plan->n_terms++;
-  if (force->params_size > 0) memcpy(term->params, params, force->params_size);
+  if (params) memcpy(term->params, params, force->params_size);
   if (force->prepare) {
     const msr_status status = force->prepare(term->params, start, &term->made, err);
     if (status != MSR_OK) return status;
@@ -164,8 +164,9 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, int64_t subste
   plan->figures.springs = plan->mesh.springs.n;
   plan->figures.anchors = plan->mesh.springs.n_anchors;
   const size_t n = plan->figures.masses;
-  double *q = msri_alloc(4 * n, sizeof *q, "the masses", err), *v = q + 2 * n;
+  double *q = msri_alloc(4 * n, sizeof *q, "the masses", err);
   if (!q) return MSR_ENOMEM;
+  double *v = q + 2 * n;
   msri_plan_start(plan, q, q + n, v, v + n);
   const msr_view start = msri_plan_view(plan, 0, q, v);
   status = call_for_effects(plan, scene, &start, err);

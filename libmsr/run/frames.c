@@ -50,7 +50,9 @@ static msr_status clear_frames(frames *f, bool overwrite, msr_error *err) {
   DIR *directory = opendir(f->path);
   if (!directory) return msri_file_fail(f->path, "open", err);
   msr_status status = MSR_OK;
-  for (struct dirent *entry; status == MSR_OK && (entry = readdir(directory)) != NULL;) {
+  struct dirent *entry;
+  while (status == MSR_OK &&
+         (entry = readdir(directory)) != NULL) { // NOLINT(concurrency-*): its own
     if (!is_frame(entry->d_name)) continue;
     if (!overwrite)
       status = msri_fail(err, MSR_EUSAGE,

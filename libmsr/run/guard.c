@@ -49,7 +49,7 @@ static msr_status follow_drive(msr_state *state, double *work, msr_error *err) {
 msr_status msri_guard_begin(msr_state *state, msr_error *err) {
   if (state->guard.begun) return MSR_OK;
   const energies start = energies_of(state);
-  double ignored;
+  double ignored = 0;
   const msr_status status = state->plan->driven ? follow_drive(state, &ignored, err) : MSR_OK;
   state->guard = (msri_guard){status == MSR_OK, start.moving, start.potential, 0};
   return status;
@@ -90,7 +90,7 @@ static void advise(const msr_plan_figures *f, char *text, size_t size) {
                 ceil(f->dt / f->safe_step));
   else
     msri_format(text, size, "the step is below the limit of stability, %.3g s: try %llu substeps",
-                f->stable_step, (unsigned long long)(2 * f->substeps));
+                f->stable_step, 2 * (unsigned long long)f->substeps);
 }
 
 static msr_status refuse(const msr_state *state, double ratio, msr_error *err) {
@@ -110,7 +110,7 @@ msr_status msr_state_check(msr_state *state, msr_error *err) {
   msri_guard *guard = &state->guard;
   const msr_plan_figures *f = &state->plan->figures;
   if (state->plan->driven) {
-    double work;
+    double work = 0;
     status = follow_drive(state, &work, err);
     if (status != MSR_OK) return status;
     guard->work += work;
