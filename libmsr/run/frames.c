@@ -45,21 +45,25 @@ static msr_status make_directory(char *path, msr_error *err) {
   }
 }
 
+static const char *next_name(DIR *directory) {
+  const struct dirent *entry = readdir(directory); // NOLINT(concurrency-mt-unsafe): its own stream
+  return entry ? entry->d_name : NULL;
+}
+
 /* Removes the frames of a directory, or refuses if there are any. */
 static msr_status clear_frames(frames *f, bool overwrite, msr_error *err) {
   DIR *directory = opendir(f->path);
   if (!directory) return msri_file_fail(f->path, "open", err);
   msr_status status = MSR_OK;
-  struct dirent *entry;
-  while (status == MSR_OK &&
-         (entry = readdir(directory)) != NULL) { // NOLINT(concurrency-*): its own
-    if (!is_frame(entry->d_name)) continue;
+  const char *name;
+  while (status == MSR_OK && (name = next_name(directory)) != NULL) {
+    if (!is_frame(name)) continue;
     if (!overwrite)
       status = msri_fail(err, MSR_EUSAGE,
                          "%s: frames are there already; name another directory, "
                          "or use --force to replace them",
                          f->path);
-    else if (unlinkat(dirfd(directory), entry->d_name, 0) != 0)
+    else if (unlinkat(dirfd(directory), name, 0) != 0)
       status = msri_file_fail(f->path, "empty", err);
   }
   closedir(directory);
