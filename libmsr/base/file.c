@@ -21,7 +21,8 @@ static const struct advice {
     {ENOENT, "check its name"},          {ENOTDIR, "check its name"},
     {ENAMETOOLONG, "shorten its name"},  {EACCES, "check its permissions"},
     {EBADF, "check its name"},           {EISDIR, "give a file, not a directory"},
-    {ENOSPC, "free some space"},         {EPIPE, "what should read it has ended"},
+    {ENOSPC, "free some space"},         {EFBIG, "make it smaller"},
+    {EPIPE, "what should read it has ended"},
     {0, "check the disk or the device"},
 };
 
