@@ -188,7 +188,7 @@ typedef struct msr_force {
   /* Potential energy [kg px^2/s^2]. */
   double (*energy)(const void *self, const msr_view *s);
   /* Upper bounds in any state, for the stable step: of the largest eigenvalue of -dF/dx / m
-   * [1/s^2] and of -dF/dv / m [1/s]; both are 0 on entry. */
+   * [1/s^2], at v = 0, and of -dF/dv / m [1/s]; both are 0 on entry. */
   msr_status (*rates)(const void *self, const msr_view *s, double *omega2, double *gamma);
 } msr_force;
 
@@ -216,13 +216,15 @@ MSR_API extern const msr_force msr_force_damping;
 /* Random wind, which includes the drag of the air that it moves: F = c (w(t) - v), with
  * w = (speed, 0) plus an Ornstein-Uhlenbeck process in x and one in y of standard deviation
  * `gust` and correlation time `gust_time` (Uhlenbeck & Ornstein 1930), drawn from the seed
- * on a grid of times of its own and interpolated by a spline of degree 7: a function of (seed, t)
- * alone, the same for every integrator and step. gust = 0 blows steadily and draws nothing. */
+ * on a grid of gust_time / 16 and interpolated by a spline of degree 7: a function of (seed, t)
+ * alone, the same for every integrator and step. The variance is gust^2; the covariance beyond a
+ * quarter of gust_time is 3 to 5 % above gust^2 exp(-lag / gust_time). gust = 0 blows steadily and
+ * draws nothing. */
 typedef struct msr_wind {
   double c;         /* drag of the air [kg/s], > 0; 0: the mean mass over 1 s */
   double speed;     /* mean, along x [px/s], any sign */
   double gust;      /* [px/s], >= 0 */
-  double gust_time; /* [s], > 0; 0: 1 s */
+  double gust_time; /* [s], >= 1e-6; 0: 1 s */
   uint64_t seed;
 } msr_wind;
 MSR_API extern const msr_force msr_force_wind;

@@ -18,10 +18,14 @@ static const struct advice {
   int number;
   const char *text;
 } advices[] = {
-    {ENOENT, "check its name"},          {ENOTDIR, "check its name"},
-    {ENAMETOOLONG, "shorten its name"},  {EACCES, "check its permissions"},
-    {EBADF, "check its name"},           {EISDIR, "give a file, not a directory"},
-    {ENOSPC, "free some space"},         {EFBIG, "make it smaller"},
+    {ENOENT, "check its name"},
+    {ENOTDIR, "check its name"},
+    {ENAMETOOLONG, "shorten its name"},
+    {EACCES, "check its permissions"},
+    {EBADF, "check its name"},
+    {EISDIR, "give a file, not a directory"},
+    {ENOSPC, "free some space"},
+    {EFBIG, "make it smaller"},
     {EPIPE, "what should read it has ended"},
     {0, "check the disk or the device"},
 };

@@ -80,7 +80,8 @@ msri_noise msri_noise_of(double deviation, double time, uint64_t seed) {
 
 void msri_noise_at(const msri_noise *noise, msri_noise_cache *cache, double t, double *x,
                    double *y) {
-  const double at = t / noise->time * GRID, k = floor(at);
+  const double most = 0x1p52, asked = t / noise->time * GRID;
+  const double at = msri_max(-most, msri_min(asked, most)), k = floor(at);
   double w[POINTS], px, py;
   spline(at - k, w);
   *x = *y = 0;

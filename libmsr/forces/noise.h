@@ -22,10 +22,8 @@ typedef struct msri_noise_cache {
   double x[2][MSRI_NOISE_BLOCK], y[2][MSRI_NOISE_BLOCK];
 } msri_noise_cache;
 
-/* Largest |t| over the correlation time at which the process is defined. */
-#define MSRI_NOISE_REACH 1e15
-
-/* The process at time t. The cache only saves time: it never changes the values. */
+/* The process at time t; beyond 2^48 correlation times it stays as it is there. The cache only
+ * saves time: it never changes the values. */
 void msri_noise_at(const msri_noise *noise, msri_noise_cache *cache, double t, double *x,
                    double *y);
 

@@ -15,13 +15,19 @@ typedef struct wind {
   msri_noise noise;
 } wind;
 
+/* Gusts of shorter correlation are noise that no step could follow. */
+static const double shortest = 1e-6; /* [s] */
+
 static msr_status check(const void *params, msr_error *err) {
   const msr_wind *w = params;
   const bool finite =
       isfinite(w->c) && isfinite(w->speed) && isfinite(w->gust) && isfinite(w->gust_time);
-  if (finite && w->c >= 0 && w->gust >= 0 && w->gust_time >= 0) return MSR_OK;
+  if (finite && w->c >= 0 && w->gust >= 0 && (w->gust_time == 0 || w->gust_time >= shortest))
+    return MSR_OK;
   return msri_fail(err, MSR_EUSAGE,
-                   "wind: speed must be finite, drag, gust and gust time finite and 0 or more");
+                   "wind: speed must be finite, drag and gust finite and 0 or more, gust time "
+                   "%g s or more",
+                   shortest);
 }
 
 static double total_mass(const msr_view *s) {

@@ -1,14 +1,15 @@
 /* splitting.c - symplectic splittings of q'' = a(t, q): kicks v += b h a and drifts q += c h v in
  * turn (Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, II.5). A method is a row.
  *
- * What depends on v is advanced by half a step at each end (Strang 1968), by its own flow, so that
- * order 2 is kept and damping doesn't limit the step. */
+ * What depends on v is advanced by its own flow, so that damping doesn't limit the step: by half a
+ * step at each end of a symmetric method, which keeps order 2 (Strang 1968), else by a whole one
+ * after the first kick (at both ends, damping would lower the limit of kick and drift). */
 #include "base/base.h"
 
 typedef struct splitting {
   int stages;
   double kick[4], drift[4]; /* [stages], in units of h; each kick precedes its drift */
-  bool shared;              /* the last kick's a serves the next step's first */
+  bool symmetric;           /* and so the last kick's a serves the next step's first */
 } splitting;
 
 static msr_status damp(const msr_system *system, double t, double h, bool backward, const double *q,
@@ -30,7 +31,7 @@ static msr_status accelerate(const msr_system *system, double t, const double *q
 static msr_status begin(const msr_integrator *self, const msr_system *system, double t,
                         const double *q, const double *v, double *work) {
   const splitting *row = self->coefficients;
-  return row->shared ? accelerate(system, t, q, v, work) : MSR_OK;
+  return row->symmetric ? accelerate(system, t, q, v, work) : MSR_OK;
 }
 
 static msr_status step(const msr_integrator *self, const msr_system *system,
@@ -38,17 +39,20 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
   const splitting *row = self->coefficients;
   const double h = interval->h;
   double *a = work, share = 0;
-  msr_status status = damp(system, interval->t, h / 2, false, q, v);
+  msr_status status = MSR_OK;
+  if (row->symmetric) status = damp(system, interval->t, h / 2, false, q, v);
   for (int s = 0; s < row->stages && status == MSR_OK; s++) {
-    if (s > 0 || !row->shared)
+    if (s > 0 || !row->symmetric)
       status = accelerate(system, msri_interval_time(interval, share), q, v, a);
     if (status != MSR_OK) return status;
     const double bh = row->kick[s] * h;
     for (size_t i = 0; i < system->n; i++) v[i] += bh * a[i];
-    if (row->drift[s] != 0) status = drift(system, row->drift[s] * h, q, v);
+    if (s == 0 && !row->symmetric) status = damp(system, interval->t, h, false, q, v);
+    if (status == MSR_OK && row->drift[s] != 0) status = drift(system, row->drift[s] * h, q, v);
     share += row->drift[s];
   }
-  return status == MSR_OK ? damp(system, interval->end, h / 2, true, q, v) : status;
+  if (status != MSR_OK || !row->symmetric) return status;
+  return damp(system, interval->end, h / 2, true, q, v);
 }
 
 static const splitting symplectic_euler = {1, {1}, {1}, false};
