@@ -29,7 +29,7 @@ static const parameter parameters[] = {
     {"MASSE", offsetof(msr_conf, mass), false, DBL_TRUE_MIN, DBL_MAX, "greater than 0"},
     {"TENSION_RESSORT", offsetof(msr_conf, stiffness), false, 0, DBL_MAX, "0 or more"},
     {"NB_ITERATIONS", offsetof(msr_conf, iterations), true, 0, 0x1p53, "at most 2^53"},
-    {"NB_IMAGES", offsetof(msr_conf, images), true, 1, 0x1p53, "from 1 to 2^53"},
+    {"NB_IMAGES", offsetof(msr_conf, images), true, 1, 1e9, "from 1 to 10^9"},
 };
 
 enum { N_PARAMETERS = sizeof parameters / sizeof *parameters, NAMES_SIZE = 128 };
