@@ -138,7 +138,7 @@ static const struct bad {
      "10:1: NB_ITERATIONS is 9007199254740993; it must be at most 2^53"},
     {BYTES(TO_TENSION "NB_ITERATIONS\n18446744073709551616\n"),
      "10:1: NB_ITERATIONS: '18446744073709551616' is too large; write a smaller number"},
-    {BYTES(TO_ITERATIONS "NB_IMAGES\n0\n"), "12:1: NB_IMAGES is 0; it must be from 1 to 2^53"},
+    {BYTES(TO_ITERATIONS "NB_IMAGES\n0\n"), "12:1: NB_IMAGES is 0; it must be from 1 to 10^9"},
     {BYTES(TO_ITERATIONS "NB_IMAGES\n20001\n"),
      "12:1: NB_IMAGES is 20001 and NB_ITERATIONS 20000; ask for at most one image per iteration"},
     {BYTES(TO_TENSION "NB_ITERATIONS\n0\nNB_IMAGES\n2\n"),
@@ -160,7 +160,7 @@ static const struct bad {
 /* Parses a copy that ends where it ends, so that a sanitizer or valgrind sees a byte read too many.
  */
 static msr_status parse(const char *bytes, size_t size, msr_conf *conf, msr_error *err) {
-  char *copy = malloc(size);
+  char *copy = calloc(1, size);
   if (size > 0) memcpy(copy, bytes, size);
   const msr_status status = msr_conf_parse("x.conf", copy, size, conf, err);
   free(copy);
@@ -294,7 +294,7 @@ static const struct range {
 } ranges[] = {
     {{0.005, 9.8, 0.1, 1500, 20000, 800}, NULL},
     {{DBL_TRUE_MIN, -DBL_MAX, DBL_MAX, 0, 0, 1}, NULL},
-    {{1, 0, 1, -0.0, UINT64_C(1) << 53, UINT64_C(1) << 53}, NULL},
+    {{1, 0, 1, -0.0, UINT64_C(1) << 53, 1000000000}, NULL},
     {{0, 0, 1, 1, 1, 1}, "scene: DT is 0; it must be greater than 0"},
     {{(double)INFINITY, 0, 1, 1, 1, 1}, "scene: DT is inf; it must be greater than 0"},
     {{1, (double)-INFINITY, 1, 1, 1, 1}, "scene: GRAVITE is -inf; it must be finite"},
@@ -302,7 +302,9 @@ static const struct range {
     {{1, 0, 1, -1e-3, 1, 1}, "scene: TENSION_RESSORT is -0.001; it must be 0 or more"},
     {{1, 0, 1, 1, (UINT64_C(1) << 53) + 1, 1},
      "scene: NB_ITERATIONS is 9007199254740993; it must be at most 2^53"},
-    {{1, 0, 1, 1, 1, 0}, "scene: NB_IMAGES is 0; it must be from 1 to 2^53"},
+    {{1, 0, 1, 1, 1, 0}, "scene: NB_IMAGES is 0; it must be from 1 to 10^9"},
+    {{1, 0, 1, 1, UINT64_C(1) << 53, 1000000001},
+     "scene: NB_IMAGES is 1000000001; it must be from 1 to 10^9"},
     {{1, 0, 1, 1, 1, 2},
      "scene: NB_IMAGES is 2 and NB_ITERATIONS 1; ask for at most one image per iteration"},
 };
