@@ -1,0 +1,79 @@
+/* check.c - checks of the command line as a whole: operands, and options that contradict each other
+ * or that would have no effect. */
+#include "commands.h"
+#include "guess.h"
+#include "parse.h"
+#include "report.h"
+
+#include <string.h>
+#include <unistd.h>
+
+static msr_status check_options(const settings *s, msr_error *err) {
+  for (const option *o = all_options; o->help; o++) {
+    if (!(s->given & option_bit(o))) continue;
+    const spelling name = option_spelling(o);
+    if (!(o->commands & s->command->bit)) {
+      return fail(err, MSR_EUSAGE, "%s isn't an option of '%s'", name.text, s->command->name);
+    }
+    if (o->needs && !option_given(s, o->needs)) {
+      return fail(err, MSR_EUSAGE, "%s has no effect without %s", name.text, o->needs);
+    }
+    if (o->clashes && option_given(s, o->clashes)) {
+      return fail(err, MSR_EUSAGE, "%s and %s contradict each other", name.text, o->clashes);
+    }
+  }
+  if (option_given(s, "--wind") && option_given(s, "--drag") && !(s->drag > 0)) {
+    return fail(err, MSR_EUSAGE, "--drag 0 stops --wind, which acts through the drag of the air");
+  }
+  return MSR_OK;
+}
+
+static bool is_stdout(const char *path) { return path && strcmp(path, "-") == 0; }
+
+static msr_status check_outputs(const settings *s, msr_error *err) {
+  if (is_stdout(s->trajectory)) {
+    return fail(err, MSR_EUSAGE, "--trajectory can't go to standard output; name a file");
+  }
+  if (is_stdout(s->stats) && is_stdout(s->output) && !s->no_frames) {
+    return fail(err, MSR_EUSAGE, "--stats and --output can't both go to standard output");
+  }
+  if (s->stats && s->trajectory && strcmp(s->stats, s->trajectory) == 0) {
+    return fail(err, MSR_EUSAGE, "--stats and --trajectory both name '%s'", s->stats);
+  }
+  return MSR_OK;
+}
+
+/* What stands where a file should, and is none, may be a command ill spelt. */
+static msr_status check_command(const settings *s, msr_error *err) {
+  const char *const word = s->file[0];
+  if (s->named || !word || strpbrk(word, "./") || access(word, F_OK) == 0) return MSR_OK;
+  guess g = {.word = word};
+  for (const command *c = commands; c->name; c++) guess_consider(&g, c->name);
+  if (g.best) {
+    return fail(err, MSR_EUSAGE, "unknown command '%s'; did you mean '%s'?", word, g.best);
+  }
+  if (s->n_files == s->command->files) return MSR_OK;
+  return fail(err, MSR_EUSAGE, "'%s' is neither a command nor a file", word);
+}
+
+static msr_status check_files(const settings *s, msr_error *err) {
+  const size_t files = s->command->files;
+  if (s->n_files == files) return MSR_OK;
+  if (s->n_files > files) {
+    return fail(err, MSR_EUSAGE, "'%s' is one file too many: '%s' takes %s", s->file[files],
+                s->command->name, files ? "a picture and a conf" : "none");
+  }
+  if (s->n_files == 0) return fail(err, MSR_EUSAGE, "a picture and a conf are missing");
+  return fail(err, MSR_EUSAGE, "'%s' is one file of two: a picture and a conf are needed",
+              s->file[0]);
+}
+
+msr_status settings_check(const settings *s, msr_error *err) {
+  static msr_status (*const checks[])(const settings *, msr_error *) = {
+      check_command, check_options, check_outputs, check_files};
+  msr_status status = MSR_OK;
+  for (size_t i = 0; i < sizeof checks / sizeof checks[0] && status == MSR_OK; i++) {
+    status = checks[i](s, err);
+  }
+  return status;
+}

@@ -1,0 +1,64 @@
+/* options.h - what the user asks for: the settings that the command line makes, and the table of
+ * options that both the parser and the help read. */
+#ifndef CLI_OPTIONS_H
+#define CLI_OPTIONS_H
+
+#include "msr.h"
+
+#include <stdio.h>
+
+/* --push X,Y,FX,FY */
+typedef struct push {
+  int64_t column, row; /* of a pixel of the picture, from the top left */
+  double fx, fy;
+} push;
+
+typedef struct settings {
+  const struct command *command;
+  bool named;          /* the command was named, not understood */
+  const char *file[3]; /* the operands, in the user's order; the third is one too many */
+  size_t n_files;
+  const char *output, *stats, *trajectory; /* NULL: not asked for */
+  const msr_integrator *integrator;        /* NULL: auto */
+  int64_t substeps;                        /* as in msr_plan_options */
+  int64_t neighbours, border_closed, seed, scale;
+  double wind, gust, gust_time, drag, damping, restitution, friction;
+  push *pushes; /* [n_pushes] */
+  size_t n_pushes;
+  msr_style style; /* stripes only */
+  bool force, no_frames, attach, quiet, verbose, help, version;
+  uint64_t given; /* bit i: row i of the table of options */
+} settings;
+
+typedef struct option {
+  char letter;          /* -o; 0: none */
+  const char *name;     /* --output; NULL: none */
+  const char *argument; /* NULL: a flag */
+  const char *help;     /* one line */
+  unsigned commands;    /* that take it: FOR_... */
+  const struct kind *kind;
+  size_t field;        /* of settings, that it sets */
+  const char *needs;   /* the option without which it makes no sense */
+  const char *clashes; /* the option with which it makes none */
+  const char *group;   /* heading of the help before this row; NULL: goes on */
+} option;
+
+/* The last has no help. */
+extern const option all_options[];
+
+/* The row that a word such as -o, -oDIR, --output or --output=DIR begins with, or NULL. */
+const option *option_find(const char *word);
+
+/* A row as it is spelt in messages: --output, or -q if it has no name. */
+typedef struct spelling {
+  char text[32];
+} spelling;
+spelling option_spelling(const option *o);
+
+/* The bit of settings.given. */
+uint64_t option_bit(const option *o);
+
+/* Was the option of this spelling given? */
+bool option_given(const settings *s, const char *word);
+
+#endif

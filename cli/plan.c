@@ -1,0 +1,113 @@
+/* plan.c - msr plan: what would be simulated and why, what it would take; nothing is run. */
+#include "commands.h"
+#include "report.h"
+#include "simulation.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+typedef struct amount {
+  char text[24];
+} amount;
+
+/* 12345678 bytes are 12.3 MB. */
+static amount bytes(double n) {
+  static const char *const units[] = {"bytes", "kB", "MB", "GB", "TB", "PB", "EB"};
+  amount a;
+  size_t u = 0;
+  for (; n >= 1000 && u + 1 < sizeof units / sizeof units[0]; u++) n /= 1000;
+  snprintf(a.text, sizeof a.text, "%.3g %s", n, units[u]);
+  return a;
+}
+
+static void label(const char *text) { printf("%-11s ", text); }
+
+static void print_scene(const msr_plan_figures *f) {
+  label("picture");
+  printf("%zu x %zu px, %zu of them support\n", f->width, f->height, f->supports);
+  label("object");
+  printf("masses %zu, springs %zu, springs to fixed points %zu\n", f->masses, f->springs,
+         f->anchors);
+}
+
+static void print_time(const msr_plan_figures *f) {
+  label("time");
+  printf("DT %.6g s x %" PRIu64 " iterations = %.6g s, frames %" PRIu64 "\n", f->dt, f->iterations,
+         f->dt * (double)f->iterations, f->images);
+}
+
+static void print_step(const settings *s, const msr_plan_figures *f) {
+  const msr_integrator *i = f->integrator;
+  label("integrator");
+  printf("%s%s: order %d, %.3g evaluation%s of the forces per step\n", i->name,
+         s->integrator ? "" : " (auto)", i->order, i->evaluations, i->evaluations > 1 ? "s" : "");
+  label("step");
+  printf("%.6g s: %" PRIu64 " substep%s per DT\n", f->h, f->substeps, f->substeps > 1 ? "s" : "");
+  label("stable step");
+  if (isinf(f->stable_step)) {
+    puts("any");
+  } else if (f->stable_step > 0) {
+    printf("%.4g s, in any state; DT is %.3g %% of it; safe steps are up to %.4g s\n",
+           f->stable_step, 100 * f->dt / f->stable_step, f->safe_step);
+  } else {
+    puts("none: this integrator heats whatever the step");
+  }
+}
+
+static double frame_bytes(const settings *s, const msr_plan_figures *f) {
+  const double scale = (double)s->scale;
+  return 3 * scale * scale * (double)f->width * (double)f->height;
+}
+
+static void print_memory(const settings *s, const msr_plan_figures *f) {
+  const double frame = s->no_frames ? 0 : frame_bytes(s, f);
+  label("memory");
+  printf("plan %s, state %s, frame %s\n", bytes((double)f->plan_bytes).text,
+         bytes((double)f->state_bytes).text, bytes(frame).text);
+}
+
+static void print_frames(const settings *s, const msr_plan_figures *f) {
+  const uint64_t scale = (uint64_t)s->scale;
+  const char *const dir = s->output;
+  label("frames");
+  if (s->no_frames) {
+    puts("none");
+    return;
+  }
+  printf("%" PRIu64 ", each %" PRIu64 " x %" PRIu64 " px, %s in all, ", f->images, scale * f->width,
+         scale * f->height, bytes(frame_bytes(s, f) * (double)f->images).text);
+  if (strcmp(dir, "-") == 0) {
+    puts("to standard output");
+  } else {
+    printf("in %s%sframe-000000.ppm ...\n", dir, dir[strlen(dir) - 1] == '/' ? "" : "/");
+  }
+}
+
+static void print_records(const settings *s, const msr_plan_figures *f) {
+  if (s->stats) {
+    label("stats");
+    printf("%" PRIu64 " rows in %s\n", f->images, s->stats);
+  }
+  if (s->trajectory) {
+    label("trajectory");
+    printf("%s in %s\n", bytes(32 * (double)f->images * (double)f->masses).text, s->trajectory);
+  }
+}
+
+msr_status plan_command(const settings *s, msr_error *err) {
+  msr_plan *plan = NULL;
+  const msr_status status = simulation_plan(s, &plan, err);
+  if (status != MSR_OK) return status;
+  const msr_plan_figures figures = msr_plan_describe(plan);
+  print_scene(&figures);
+  print_time(&figures);
+  print_step(s, &figures);
+  print_memory(s, &figures);
+  print_frames(s, &figures);
+  print_records(s, &figures);
+  puts("effects");
+  simulation_print_effects(stdout, plan);
+  msr_plan_free(plan);
+  return print_end(err);
+}

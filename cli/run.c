@@ -1,0 +1,61 @@
+/* run.c - msr run: simulates, and writes what was asked for. */
+#include "commands.h"
+#include "outputs.h"
+#include "report.h"
+#include "simulation.h"
+#include "watch.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+/* What stopped a run, and how far it had come. */
+static msr_status explain(const watch *w, msr_status status, msr_error *err) {
+  char *const message = err->message;
+  if (status == MSR_EINTR) {
+    return fail(err, status, "interrupted after %" PRIu64 " of %" PRIu64 " frames; these are whole",
+                w->frames, w->plan.images);
+  }
+  if (status == MSR_EUNSTABLE) {
+    const size_t length = strlen(message);
+    snprintf(message + length, sizeof err->message - length,
+             " (after %" PRIu64 " of %" PRIu64 " frames, which are sound)", w->frames,
+             w->plan.images);
+  }
+  return status;
+}
+
+/* Runs and closes the outputs, whatever happens. */
+static msr_status advance(watch *w, msr_state *state, outputs *out, msr_error *err) {
+  out->sink[out->n] = watch_sink(w);
+  const msr_run_options options = {
+      .sinks = out->sink, .n_sinks = out->n + 1, .poll = watch_poll, .data = w};
+  const msr_status status = msr_run(state, &options, err);
+  watch_end(w);
+  const msr_status closed = outputs_close(out, status == MSR_OK ? err : NULL);
+  watch_end_by_pipe();
+  return status == MSR_OK ? closed : explain(w, status, err);
+}
+
+static msr_status simulate(const settings *s, const msr_plan *plan, msr_error *err) {
+  watch w;
+  outputs out;
+  msr_state *state = NULL;
+  msr_status status = msr_state_create(plan, &state, err);
+  if (status != MSR_OK) return status;
+  watch_start(&w, s, plan);
+  status = outputs_open(s, plan, &out, err);
+  if (status == MSR_OK) status = advance(&w, state, &out, err);
+  if (status == MSR_OK) watch_print_summary(&w);
+  msr_state_free(state);
+  return status;
+}
+
+msr_status run_command(const settings *s, msr_error *err) {
+  msr_plan *plan = NULL;
+  msr_status status = simulation_plan(s, &plan, err);
+  if (status != MSR_OK) return status;
+  if (s->verbose) simulation_print_effects(stderr, plan);
+  status = simulate(s, plan, err);
+  msr_plan_free(plan);
+  return status;
+}

@@ -1,0 +1,99 @@
+/* simulation.c - the options of the command in terms of the library: scene, forces, plan. */
+#include "simulation.h"
+
+#include "inputs.h"
+#include "report.h"
+
+static msr_status load(const settings *s, msr_scene **scene, msr_error *err) {
+  const msr_scene_options options = {.neighbours = (int)s->neighbours,
+                                     .attach = s->attach,
+                                     .closed_border = s->border_closed != 0};
+  inputs in;
+  msr_status status = inputs_check_safe(s, err);
+  if (status == MSR_OK) status = inputs_find(s, &in, err);
+  if (status == MSR_OK) status = msr_scene_load(in.picture, in.conf, &options, scene, err);
+  return status == MSR_EIO ? MSR_EINPUT : status;
+}
+
+static msr_status add_air(const settings *s, msr_scene *scene, msr_error *err) {
+  const msr_drag drag = {.c = s->drag};
+  const msr_wind wind = {.c = s->drag,
+                         .speed = s->wind,
+                         .gust = s->gust,
+                         .gust_time = s->gust_time,
+                         .seed = (uint64_t)s->seed};
+  if (option_given(s, "--wind")) return msr_scene_add_force(scene, &msr_force_wind, &wind, err);
+  if (option_given(s, "--drag")) return msr_scene_add_force(scene, &msr_force_drag, &drag, err);
+  return MSR_OK;
+}
+
+static msr_status add_push(const push *p, msr_scene *scene, msr_error *err) {
+  msr_push force = {.fx = p->fx, .fy = p->fy};
+  const msr_status status =
+      msr_scene_mass_at(scene, (size_t)p->column, (size_t)p->row, &force.mass, err);
+  return status == MSR_OK ? msr_scene_add_force(scene, &msr_force_push, &force, err) : status;
+}
+
+static msr_status add_forces(const settings *s, msr_scene *scene, msr_error *err) {
+  const msr_damping damping = {.z = s->damping};
+  msr_status status = msr_scene_set_contact(scene, s->restitution, s->friction, err);
+  if (status == MSR_OK && option_given(s, "--damping")) {
+    status = msr_scene_add_force(scene, &msr_force_damping, &damping, err);
+  }
+  if (status == MSR_OK) status = add_air(s, scene, err);
+  for (size_t i = 0; i < s->n_pushes && status == MSR_OK; i++) {
+    status = add_push(&s->pushes[i], scene, err);
+  }
+  return status;
+}
+
+msr_style simulation_style(const settings *s) {
+  msr_style style = s->style;
+  style.scale = (unsigned)s->scale;
+  return style;
+}
+
+/* Frames that can't be drawn are better refused before anything is written. */
+static msr_status check_frames(const settings *s, const msr_plan *plan, msr_error *err) {
+  const msr_style style = simulation_style(s);
+  msr_renderer *renderer = NULL;
+  if (s->no_frames) return MSR_OK;
+  const msr_status status = msr_renderer_create(plan, &style, &renderer, err);
+  msr_renderer_free(renderer);
+  return status;
+}
+
+static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **plan,
+                          msr_error *err) {
+  const msr_plan_options options = {.integrator = s->integrator, .substeps = s->substeps};
+  const char *text;
+  msr_status status = msr_plan_create(scene, &options, plan, err);
+  if (status != MSR_OK) return status;
+  for (size_t i = 0; (text = msr_plan_warning(*plan, i)); i++) tell(s, "note", text);
+  status = check_frames(s, *plan, err);
+  if (status == MSR_OK) return MSR_OK;
+  msr_plan_free(*plan);
+  *plan = NULL;
+  return status;
+}
+
+msr_status simulation_plan(const settings *s, msr_plan **plan, msr_error *err) {
+  msr_scene *scene = NULL;
+  const char *text;
+  msr_status status = load(s, &scene, err);
+  if (status != MSR_OK) return status;
+  for (size_t i = 0; (text = msr_scene_warning(scene, i)); i++) tell(s, "warning", text);
+  status = add_forces(s, scene, err);
+  if (status == MSR_OK) status = compile(s, scene, plan, err);
+  msr_scene_free(scene);
+  return status;
+}
+
+void simulation_print_effects(FILE *out, const msr_plan *plan) {
+  size_t n;
+  const msr_effect *effects = msr_plan_effects(plan, &n);
+  for (size_t i = 0; i < n; i++) {
+    fprintf(out, "  %-3s  %-10s %s\n", effects[i].on ? "on" : "off", effects[i].name,
+            effects[i].reason);
+  }
+}

@@ -1,0 +1,161 @@
+/* values.c - reads the values of options, strictly: the whole text or nothing, decimal, in the C
+ * locale, within range. A field of settings is set only if its text is right. */
+#include "values.h"
+
+#include "guess.h"
+
+#include <errno.h>
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool made_of(const char *text, const char *alphabet) {
+  return *text && text[strspn(text, alphabet)] == '\0';
+}
+
+static bool read_flag(const kind *k, const char *text, void *field) {
+  (void)k, (void)text;
+  *(bool *)field = true;
+  return true;
+}
+
+static bool read_path(const kind *k, const char *text, void *field) {
+  (void)k;
+  *(const char **)field = text;
+  return *text != '\0';
+}
+
+/* The alphabet leaves out what strtod also takes: blanks, hexadecimal, inf and nan. */
+static bool read_real(const kind *k, const char *text, void *field) {
+  char *end;
+  if (!made_of(text, "0123456789.eE+-")) return false;
+  const double value = strtod(text, &end);
+  if (*end || !isfinite(value) || value < k->min || value > k->max) return false;
+  *(double *)field = value;
+  return true;
+}
+
+static bool read_whole(const kind *k, const char *text, void *field) {
+  for (const named_value *n = k->names; n && n->name; n++) {
+    if (strcmp(text, n->name) != 0) continue;
+    *(int64_t *)field = n->value;
+    return true;
+  }
+  if (k->most == 0 || !made_of(text, "0123456789")) return false;
+  errno = 0;
+  const long long value = strtoll(text, NULL, 10);
+  if (errno || value < k->least || value > k->most) return false;
+  *(int64_t *)field = value;
+  return true;
+}
+
+static bool read_integrator(const kind *k, const char *text, void *field) {
+  (void)k;
+  if (strcmp(text, "auto") == 0) return true;
+  for (const msr_integrator *const *i = msr_integrators; *i; i++) {
+    if (strcmp((*i)->name, text) != 0) continue;
+    *(const msr_integrator **)field = *i;
+    return true;
+  }
+  return false;
+}
+
+static const char *nearest_integrator(const char *text) {
+  guess g = {.word = text};
+  for (const msr_integrator *const *i = msr_integrators; *i; i++) guess_consider(&g, (*i)->name);
+  return g.best;
+}
+
+/* Reads up to a comma, or to the end for the last, and moves past it. */
+static bool read_part(const kind *k, const char **text, bool last, void *field) {
+  char part[64];
+  const size_t length = strcspn(*text, ",");
+  if (length >= sizeof part || ((*text)[length] == '\0') != last) return false;
+  memcpy(part, *text, length);
+  part[length] = '\0';
+  *text += length + !last;
+  return k->read(k, part, field);
+}
+
+static bool read_push(const kind *k, const char *text, void *field) {
+  static const struct kind place = {.read = read_whole, .most = INT_MAX};
+  settings *s = field;
+  push *p = &s->pushes[s->n_pushes];
+  (void)k;
+  if (!read_part(&place, &text, false, &p->column) || !read_part(&place, &text, false, &p->row) ||
+      !read_part(&a_real, &text, false, &p->fx) || !read_part(&a_real, &text, true, &p->fy)) {
+    return false;
+  }
+  s->n_pushes++;
+  return true;
+}
+
+/* Black ends in 1: a style that is all zero asks for the library's own colour. */
+#define COLOURS(X)                                                                                 \
+  X(red, 0xff0000)                                                                                 \
+  X(orange, 0xff8000)                                                                              \
+  X(yellow, 0xffff00)                                                                              \
+  X(green, 0x00a000)                                                                               \
+  X(cyan, 0x00c0c0)                                                                                \
+  X(blue, 0x0000ff)                                                                                \
+  X(magenta, 0xff00ff)                                                                             \
+  X(grey, 0x808080)                                                                                \
+  X(black, 0x000001)
+
+#define COLOUR_WORD(name, rgb) {#name, rgb},
+#define COLOUR_NAME(name, rgb) #name " "
+static const named_value colours[] = {COLOURS(COLOUR_WORD){NULL, 0}};
+
+static bool read_colour(const char *text, unsigned char rgb[3]) {
+  static const kind named = {.names = colours};
+  int64_t value = 0;
+  if (*text == '#') {
+    if (strlen(text) != 7 || !made_of(text + 1, "0123456789abcdefABCDEF")) return false;
+    value = strtol(text + 1, NULL, 16);
+    if (value == 0) value = 1;
+  } else if (!read_whole(&named, text, &value)) {
+    return false;
+  }
+  for (int c = 0; c < 3; c++) rgb[c] = (unsigned char)(value >> (16 - 8 * c) & 0xff);
+  return true;
+}
+
+static bool read_stripe(const kind *k, const char *text, void *field) {
+  msr_style *style = field;
+  char rows[24];
+  int64_t n;
+  const size_t length = strcspn(text, ":");
+  if (length >= sizeof rows) return false;
+  memcpy(rows, text, length);
+  rows[length] = '\0';
+  if (!read_whole(k, rows, &n)) return false;
+  style->stripes = (unsigned)n;
+  return text[length] == '\0' || read_colour(text + length + 1, style->stripe_colour);
+}
+
+static const named_value degrees[] = {{"4", 4}, {"8", 8}, {NULL, 0}};
+static const named_value borders[] = {{"open", 0}, {"closed", 1}, {NULL, 0}};
+static const named_value steps[] = {{"auto", 0}, {"off", MSR_SUBSTEPS_OFF}, {NULL, 0}};
+
+const kind a_flag = {.read = read_flag};
+const kind a_path = {.wants = "the name of a file", .read = read_path};
+const kind a_real = {.wants = "a number", .read = read_real, .min = -DBL_MAX, .max = DBL_MAX};
+const kind a_positive = {"a number above 0", read_real, .min = DBL_MIN, .max = DBL_MAX};
+const kind a_size = {.wants = "a number, 0 or more", .read = read_real, .max = DBL_MAX};
+const kind a_share = {.wants = "a number from 0 to 1", .read = read_real, .max = 1};
+const kind a_count = {"a whole number, 1 or more", read_whole, .least = 1, .most = INT_MAX};
+const kind a_seed = {"a whole number from 0 to 9223372036854775807", read_whole, .most = INT64_MAX};
+const kind a_degree = {.wants = "4 or 8", .read = read_whole, .names = degrees};
+const kind a_border = {.wants = "open or closed", .read = read_whole, .names = borders};
+const kind a_substeps = {"auto, off or a whole number from 1 to 1000000000", read_whole, .least = 1,
+                         .most = 1000000000, .names = steps};
+const kind an_integrator = {.wants = "auto or a name that 'msr list' shows",
+                            .read = read_integrator,
+                            .nearest = nearest_integrator};
+const kind a_push = {.wants = "X,Y,FX,FY: a pixel, whole numbers from the top left, and a force",
+                     .read = read_push};
+const kind a_stripe = {
+    "N or N:COLOUR: a whole number, 1 or more, and one of " COLOURS(COLOUR_NAME) "or #rrggbb",
+    read_stripe, .least = 1, .most = INT_MAX};

@@ -1,0 +1,132 @@
+/* watch.c - a run as its user sees it. The signal handler only sets a flag; the run is ended
+ * between two steps, so that all that was written stays whole. */
+#include "watch.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <signal.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { LINE = 78 };
+
+static volatile sig_atomic_t caught, times; /* the last signal, or 0; how many */
+
+/* Where a signal goes to a process and to its group it comes twice: the third is impatience. */
+static void on_signal(int number) {
+  caught = number;
+  if (++times < 3 || number == SIGPIPE) return;
+  signal(number, SIG_DFL);
+  raise(number);
+}
+
+/* A signal that the caller had ignored (nohup, a job in the background) stays ignored. */
+static void catch_signal(int number) {
+  struct sigaction old, action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
+  sigemptyset(&action.sa_mask);
+  if (sigaction(number, NULL, &old) == 0 && old.sa_handler != SIG_IGN) {
+    sigaction(number, &action, NULL);
+  }
+}
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void watch_start(watch *w, const settings *s, const msr_plan *plan) {
+  *w = (watch){.s = s, .plan = msr_plan_describe(plan), .started = now()};
+  w->shown = w->started;
+  w->shows = !s->quiet && isatty(STDERR_FILENO);
+  catch_signal(SIGINT);
+  catch_signal(SIGTERM);
+  catch_signal(SIGPIPE);
+}
+
+static void follow_energy(watch *w, double energy) {
+  if (w->frames == 0) w->first_energy = w->least_energy = w->most_energy = energy;
+  w->least_energy = fmin(w->least_energy, energy);
+  w->most_energy = fmax(w->most_energy, energy);
+}
+
+static msr_status count_frame(void *self, const msr_state *state, uint64_t frame, msr_error *err) {
+  watch *w = self;
+  (void)err;
+  if (w->s->verbose) follow_energy(w, msr_state_energy(state).total);
+  w->frames = frame + 1;
+  return MSR_OK;
+}
+
+static msr_status close_nothing(void *self, msr_error *err) {
+  (void)self, (void)err;
+  return MSR_OK;
+}
+
+msr_sink watch_sink(watch *w) { return (msr_sink){w, count_frame, close_nothing}; }
+
+static void show(const watch *w, uint64_t done) {
+  char line[LINE + 1];
+  const double share = (double)done / (double)w->plan.iterations;
+  const double rate = (double)done / (w->shown - w->started);
+  const double left = (double)(w->plan.iterations - done) / rate;
+  snprintf(line, sizeof line,
+           "frame %" PRIu64 "/%" PRIu64 "  %.0f %%  %.0f iterations/s  %.0f:%02.0f left", w->frames,
+           w->plan.images, 100 * share, rate, floor(left / 60), floor(fmod(left, 60)));
+  fprintf(stderr, "\r%-*s", LINE, line);
+  fflush(stderr);
+}
+
+msr_status watch_poll(void *data, const msr_state *state) {
+  watch *w = data;
+  if (caught) return MSR_EINTR;
+  if (!w->shows) return MSR_OK;
+  const double time = now();
+  const uint64_t done = msr_state_iteration(state);
+  if (done == 0 || time - w->shown < 0.2) return MSR_OK;
+  w->shown = time;
+  show(w, done);
+  return MSR_OK;
+}
+
+void watch_end(watch *w) {
+  if (w->shown > w->started) fprintf(stderr, "\r%*s\r", LINE, "");
+  w->shown = w->started;
+}
+
+void watch_end_by_pipe(void) {
+  if (caught != SIGPIPE) return;
+  signal(SIGPIPE, SIG_DFL);
+  raise(SIGPIPE);
+}
+
+static void print_where(const watch *w) {
+  const char *const dir = w->s->output;
+  const bool slash = dir[strlen(dir) - 1] == '/';
+  if (w->s->no_frames) {
+    fputs(", none drawn", stderr);
+  } else if (strcmp(dir, "-") == 0) {
+    fputs(" to standard output", stderr);
+  } else {
+    fprintf(stderr, " in %s%s (frame-000000.ppm ...)", dir, slash ? "" : "/");
+  }
+}
+
+static void print_energy(const watch *w) {
+  const double start = w->first_energy, scale = fabs(start) > 0 ? 100 / fabs(start) : 1;
+  fprintf(stderr, ", energy within %+.2g .. %+.2g%s of the start",
+          scale * (w->least_energy - start), scale * (w->most_energy - start),
+          fabs(start) > 0 ? " %" : "");
+}
+
+void watch_print_summary(const watch *w) {
+  if (w->s->quiet) return;
+  fprintf(stderr, "msr: %" PRIu64 " frame%s", w->frames, w->frames == 1 ? "" : "s");
+  print_where(w);
+  const double took = now() - w->started;
+  fprintf(stderr, ": %.6g s simulated in ", w->plan.dt * (double)w->plan.iterations);
+  fprintf(stderr, took < 10 ? "%.2g s" : "%.0f s", took);
+  if (w->s->verbose) print_energy(w);
+  fputs("\n", stderr);
+}

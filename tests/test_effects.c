@@ -1,0 +1,552 @@
+/* test_effects.c - effects are paid for only when called for: what is off is never run and changes
+ * no bit, what is on says why, and a force of one's own is treated as the library's are.
+ * link: --wrap=gsl_rng_set */
+#include "msr.h"
+
+#include <gsl/gsl_rng.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define LENGTH(array) (sizeof(array) / sizeof *(array))
+
+/* ---- Random numbers that were asked for */
+
+static int seedings;
+
+void __real_gsl_rng_set(const gsl_rng *rng, unsigned long seed);
+void __wrap_gsl_rng_set(const gsl_rng *rng, unsigned long seed);
+
+void __wrap_gsl_rng_set(const gsl_rng *rng, unsigned long seed) {
+  seedings++;
+  __real_gsl_rng_set(rng, seed);
+}
+
+/* ---- Scenes */
+
+/* '.' air, '#' support, 'o' mass; each row ends in a line feed. */
+static msr_picture *paint(const char *art) {
+  const size_t width = strcspn(art, "\n"), height = strlen(art) / (width + 1);
+  msr_picture *picture;
+  assert_int_equal(msr_picture_create(width, height, &picture, NULL), MSR_OK);
+  for (size_t p = 0; p < width * height; p++) {
+    const char letter = art[p + p / width];
+    unsigned char *rgb = picture->rgb + 3 * p;
+    if (letter != '.') rgb[1] = rgb[2] = 0;
+    if (letter == '#') rgb[0] = 0;
+  }
+  return picture;
+}
+
+static const char block[] = "........\n..ooo...\n..ooo...\n........\n........\n........\n";
+static const char block_on_floor[] = "........\n..ooo...\n..ooo...\n........\n........\n########\n";
+/* The step is small enough for explicit Euler not to explode within the run. */
+static const msr_conf still = {
+    .dt = 0.0005, .mass = 0.1, .stiffness = 1500, .iterations = 1, .images = 1};
+
+static msr_scene *scene_of(const char *art, msr_conf conf, bool closed) {
+  const msr_scene_options options = {.closed_border = closed};
+  msr_picture *picture = paint(art);
+  msr_scene *scene;
+  assert_int_equal(msr_scene_from_picture("art", picture, &conf, &options, &scene, NULL), MSR_OK);
+  msr_picture_free(picture);
+  return scene;
+}
+
+static msr_scene *with(msr_scene *scene, const msr_force *force, const void *params) {
+  assert_int_equal(msr_scene_add_force(scene, force, params, NULL), MSR_OK);
+  return scene;
+}
+
+/* The block's masses without a picture: a scene that never had springs. */
+static msr_scene *loose_masses(void) {
+  msr_scene *scene;
+  assert_int_equal(msr_scene_create(&scene, NULL), MSR_OK);
+  assert_int_equal(msr_scene_set_times(scene, still.dt, 1, 1, NULL), MSR_OK);
+  for (int i = 0; i < 6; i++) {
+    const msr_mass mass = {.x = 2.5 + i % 3, .y = 4.5 - i / 3, .m = 0.1};
+    assert_int_equal(msr_scene_add_mass(scene, &mass, NULL, NULL), MSR_OK);
+  }
+  return scene;
+}
+
+/* ---- Runs */
+
+typedef struct run {
+  msr_plan *plan;
+  msr_state *state;
+} run;
+
+enum { ITERATIONS = 40 };
+
+/* Throws the block by hand and steps; the scene is freed. */
+static run run_of(msr_scene *scene, const msr_integrator *integrator) {
+  run r;
+  const msr_plan_options options = {.integrator = integrator, .substeps = 1};
+  assert_int_equal(msr_plan_create(scene, &options, &r.plan, NULL), MSR_OK);
+  msr_scene_free(scene);
+  assert_int_equal(msr_state_create(r.plan, &r.state, NULL), MSR_OK);
+  const msr_arrays a = msr_state_edit(r.state);
+  for (size_t i = 0; i < msr_plan_describe(r.plan).masses; i++) {
+    a.vx[i] = 1 + (double)i / 8;
+    a.vy[i] = (double)i / 4 - 0.5;
+  }
+  assert_int_equal(msr_state_step(r.state, ITERATIONS, NULL), MSR_OK);
+  return r;
+}
+
+static void end(run r) {
+  msr_state_free(r.state);
+  msr_plan_free(r.plan);
+}
+
+/* The effect of that name: its number, or that of all effects. */
+static size_t find(const run *r, const char *name, const msr_effect **effect) {
+  size_t n, e = 0;
+  const msr_effect *all = msr_plan_effects(r->plan, &n);
+  while (e < n && strcmp(all[e].name, name) != 0) e++;
+  *effect = e < n ? &all[e] : NULL;
+  return e;
+}
+
+static void assert_effect(const run *r, const char *name, bool on) {
+  const msr_effect *effect;
+  const size_t e = find(r, name, &effect);
+  assert_non_null(effect);
+  assert_int_equal(effect->on, on);
+  assert_true(strlen(effect->reason) > 0);
+  assert_int_equal(msr_state_calls(r->state, e) > 0, on);
+}
+
+/* ---- What each effect needs to be on, to be off, and never to have been there */
+
+static msr_scene *plain(void) { return scene_of(block, still, false); }
+
+static msr_scene *no_stiffness(void) {
+  msr_conf slack = still;
+  slack.stiffness = 0;
+  return scene_of(block, slack, false);
+}
+
+static msr_scene *in_gravity(void) {
+  msr_conf heavy = still;
+  heavy.gravity = 9.8;
+  return scene_of(block, heavy, false);
+}
+
+static msr_scene *on_floor(void) { return scene_of(block_on_floor, still, false); }
+static msr_scene *closed(void) { return scene_of(block, still, true); }
+static msr_scene *no_gravity(void) { return with(plain(), &msr_force_gravity, &(msr_gravity){0}); }
+static msr_scene *drag(void) { return with(plain(), &msr_force_drag, &(msr_drag){0.1}); }
+static msr_scene *no_drag(void) { return with(plain(), &msr_force_drag, &(msr_drag){0}); }
+static msr_scene *damping(void) { return with(plain(), &msr_force_damping, &(msr_damping){0.1}); }
+static msr_scene *no_damping(void) { return with(plain(), &msr_force_damping, &(msr_damping){0}); }
+static msr_scene *push(void) { return with(plain(), &msr_force_push, &(msr_push){2, 1, 1}); }
+static msr_scene *no_push(void) { return with(plain(), &msr_force_push, &(msr_push){2, 0, 0}); }
+
+static msr_scene *wind(void) {
+  return with(plain(), &msr_force_wind, &(msr_wind){.speed = 1, .gust = 1, .seed = 7});
+}
+
+static const struct row {
+  const char *name;
+  msr_scene *(*on)(void), *(*off)(void), *(*never)(void);
+} rows[] = {
+    {"springs", plain, no_stiffness, loose_masses},
+    {"gravity", in_gravity, no_gravity, plain},
+    {"damping", damping, no_damping, plain},
+    {"drag", drag, no_drag, plain},
+    {"wind", wind, plain, plain}, // no wind is no wind: what is still is drag
+    {"push", push, no_push, plain},
+    {"supports", on_floor, plain, plain},
+    {"border", closed, plain, plain},
+};
+
+/* A new row in the library's table must have one here. */
+static void every_effect_is_tested(void **unused) {
+  (void)unused;
+  for (const msr_force *const *f = msr_forces; *f; f++) {
+    size_t i = 0;
+    while (i < LENGTH(rows) && strcmp(rows[i].name, (*f)->name) != 0) i++;
+    if (i == LENGTH(rows)) fail_msg("%s has no row in this test", (*f)->name);
+  }
+  const run r = run_of(plain(), NULL);
+  size_t n;
+  msr_plan_effects(r.plan, &n);
+  assert_int_equal(n, LENGTH(rows));
+  end(r);
+}
+
+static void what_is_off_changes_no_bit(void **unused) {
+  (void)unused;
+  for (const msr_integrator *const *i = msr_integrators; *i; i++)
+    for (size_t e = 0; e < LENGTH(rows); e++) {
+      const run off = run_of(rows[e].off(), *i), never = run_of(rows[e].never(), *i);
+      assert_effect(&off, rows[e].name, false);
+      assert_effect(&never, rows[e].name, false);
+      assert_true(msr_state_hash(off.state) == msr_state_hash(never.state));
+      end(off);
+      end(never);
+    }
+}
+
+static void what_is_on_is_called(void **unused) {
+  (void)unused;
+  for (const msr_integrator *const *i = msr_integrators; *i; i++)
+    for (size_t e = 0; e < LENGTH(rows); e++) {
+      const run on = run_of(rows[e].on(), *i);
+      assert_effect(&on, rows[e].name, true);
+      end(on);
+    }
+}
+
+/* A force does something; a support or a border that isn't met changes no bit. */
+static void what_is_on_acts(void **unused) {
+  (void)unused;
+  for (size_t e = 0; e < LENGTH(rows); e++) {
+    const run on = run_of(rows[e].on(), NULL), never = run_of(rows[e].never(), NULL);
+    const msr_effect *effect;
+    find(&on, rows[e].name, &effect);
+    const bool same = msr_state_hash(on.state) == msr_state_hash(never.state);
+    assert_int_equal(same, effect->force == NULL);
+    assert_int_equal(msr_state_contacts(on.state), 0);
+    end(on);
+    end(never);
+  }
+}
+
+/* Once it is under way, Verlet takes one evaluation per step: no effect is called more often. */
+static void calls_are_as_few_as_can_be(void **unused) {
+  (void)unused;
+  const run r = run_of(in_gravity(), &msr_integrator_verlet);
+  const char *const names[] = {"springs", "gravity"};
+  for (int i = 0; i < 2; i++) {
+    const msr_effect *effect;
+    const size_t e = find(&r, names[i], &effect);
+    const uint64_t before = msr_state_calls(r.state, e);
+    assert_int_equal(msr_state_step(r.state, ITERATIONS, NULL), MSR_OK);
+    assert_int_equal(msr_state_calls(r.state, e) - before, ITERATIONS);
+  }
+  assert_int_equal(msr_state_calls(r.state, 1000), 0);
+  end(r);
+}
+
+static void no_random_number_without_gusts(void **unused) {
+  (void)unused;
+  static const msr_wind steady = {.speed = 3, .seed = 7}, gusty = {.gust = 1, .seed = 7};
+  seedings = 0;
+  end(run_of(plain(), NULL));
+  assert_int_equal(seedings, 0);
+  end(run_of(with(plain(), &msr_force_wind, &steady), NULL));
+  assert_int_equal(seedings, 0);
+  end(run_of(with(plain(), &msr_force_wind, &gusty), NULL));
+  assert_true(seedings > 0);
+}
+
+/* Nothing moves: nothing is on. */
+static void without_masses_all_is_off(void **unused) {
+  (void)unused;
+  msr_scene *scene = scene_of(".#.\n", still, true);
+  with(scene, &msr_force_gravity, &(msr_gravity){9.8});
+  with(scene, &msr_force_drag, &(msr_drag){1});
+  with(scene, &msr_force_damping, &(msr_damping){1});
+  with(scene, &msr_force_wind, &(msr_wind){.speed = 1, .gust = 1});
+  const run r = run_of(scene, NULL);
+  size_t n;
+  const msr_effect *effects = msr_plan_effects(r.plan, &n);
+  for (size_t e = 0; e < n; e++) assert_effect(&r, effects[e].name, false);
+  end(r);
+}
+
+/* ---- Order and reasons */
+
+static void effects_are_in_the_order_in_which_they_act(void **unused) {
+  (void)unused;
+  static const char *const due[] = {"springs",  "push",   "drag", "push",    "wind",
+                                    "supports", "border", "drag", "gravity", "damping"};
+  msr_scene *scene = scene_of(block_on_floor, still, true);
+  with(scene, &msr_force_push, &(msr_push){0, 1, 1});
+  with(scene, &msr_force_drag, &(msr_drag){0.1});
+  with(scene, &msr_force_drag, &(msr_drag){0});
+  with(scene, &msr_force_push, &(msr_push){0, 2, 2});
+  with(scene, &msr_force_wind, &(msr_wind){.speed = 1});
+  const run r = run_of(scene, NULL);
+  size_t n;
+  const msr_effect *effects = msr_plan_effects(r.plan, &n);
+  assert_int_equal(n, LENGTH(due));
+  for (size_t e = 0; e < n; e++) {
+    assert_string_equal(effects[e].name, due[e]);
+    assert_int_equal(effects[e].on, e < 7);
+    assert_int_equal(effects[e].force == NULL, e == 5 || e == 6);
+  }
+  end(r);
+}
+
+static void reasons_say_what_is_meant(void **unused) {
+  (void)unused;
+  static const struct {
+    msr_scene *(*scene)(void);
+    const char *name, *reason;
+  } cases[] = {
+      {plain, "springs", "7 springs between masses, 0 to fixed points"},
+      {no_stiffness, "springs", "every stiffness (TENSION_RESSORT) is 0"},
+      {loose_masses, "springs", "no two masses are neighbours"},
+      {in_gravity, "gravity", "GRAVITE is 9.8 px/s^2"},
+      {no_gravity, "gravity", "GRAVITE is 0"},
+      {plain, "gravity", "GRAVITE is 0"},
+      {drag, "drag", "asked for: c = 0.1 kg/s"},
+      {no_drag, "drag", "its coefficient is 0"},
+      {plain, "drag", "not asked for"},
+      {damping, "damping", "asked for: z = 0.1 kg/s on every spring"},
+      {no_damping, "damping", "its coefficient is 0"},
+      {push, "push", "asked for: (1, 1) on mass 2"},
+      {no_push, "push", "its force is 0"},
+      {wind, "wind", "asked for: mean 1 px/s, gusts 1 px/s over 1 s, seed 7; drag c = 0.1 kg/s"},
+      {on_floor, "supports", "8 black pixels; restitution 1, friction 0"},
+      {plain, "supports", "there is no black pixel"},
+      {closed, "border", "it is closed; restitution 1, friction 0"},
+      {plain, "border", "it is open"},
+  };
+  for (size_t i = 0; i < LENGTH(cases); i++) {
+    const run r = run_of(cases[i].scene(), NULL);
+    const msr_effect *effect;
+    find(&r, cases[i].name, &effect);
+    assert_string_equal(effect->reason, cases[i].reason);
+    end(r);
+  }
+}
+
+/* ---- A force of one's own */
+
+typedef struct mine {
+  int *adds, *flows, *prepares, *releases;
+  msr_status of_check, of_prepare, of_add, of_flow, of_rates;
+  double c; /* F = -c v */
+  bool idle;
+} mine;
+
+static msr_status my_check(const void *params, msr_error *err) {
+  (void)err;
+  return ((const mine *)params)->of_check;
+}
+
+static bool my_idle(const void *params, const msr_view *s, char *why, size_t size) {
+  const mine *p = params;
+  assert_true(s->t == 0 && size > 8 && s->vx != NULL);
+  if (p->idle) memcpy(why, "of rest", sizeof "of rest");
+  return p->idle;
+}
+
+static msr_status my_prepare(const void *params, const msr_view *s, void **self, msr_error *err) {
+  (void)s, (void)err;
+  const mine *p = params;
+  ++*p->prepares;
+  if (p->of_prepare) return p->of_prepare;
+  mine *made = malloc(sizeof *made);
+  assert_non_null(made);
+  *made = *p;
+  *self = made;
+  return MSR_OK;
+}
+
+static void my_release(void *self) {
+  assert_non_null(self); // it frees what prepare made, and nothing else
+  ++*((mine *)self)->releases;
+  free(self);
+}
+
+static msr_status my_add(const void *self, void *scratch, const msr_view *s, double *fx,
+                         double *fy) {
+  const mine *p = self;
+  ++*p->adds;
+  ++*(uint64_t *)scratch;
+  assert_true((uintptr_t)scratch % sizeof(double) == 0);
+  for (size_t i = 0; i < s->n; i++) fx[i] -= p->c * s->vx[i], fy[i] -= p->c * s->vy[i];
+  return p->of_add;
+}
+
+static msr_status my_flow(const void *self, void *scratch, const msr_view *s, double h,
+                          bool backward, double *vx, double *vy) {
+  (void)scratch, (void)s, (void)h, (void)backward, (void)vx, (void)vy;
+  ++*((const mine *)self)->flows;
+  return ((const mine *)self)->of_flow;
+}
+
+static msr_status my_rates(const void *self, const msr_view *s, double *omega2, double *gamma) {
+  assert_true(*omega2 == 0 && *gamma == 0);
+  *gamma = ((const mine *)self)->c / msr_view_mass(s, 0);
+  return ((const mine *)self)->of_rates;
+}
+
+#define MINE                                                                                       \
+  .name = "mine", .summary = "F = -c v", .uses_velocity = true, .dissipative = true,               \
+  .params_size = sizeof(mine), .scratch_size = sizeof(uint64_t) + 1, .check = my_check,            \
+  .idle = my_idle, .prepare = my_prepare, .release = my_release, .add = my_add, .rates = my_rates
+
+static const msr_force with_flow = {MINE, .flow = my_flow};
+static const msr_force without_flow = {MINE};
+
+static int adds, flows, prepares, releases;
+
+static mine counting(double c) {
+  adds = flows = prepares = releases = 0;
+  return (mine){
+      .adds = &adds, .flows = &flows, .prepares = &prepares, .releases = &releases, .c = c};
+}
+
+static void my_force_is_treated_as_built_in(void **unused) {
+  (void)unused;
+  const mine params = counting(0.1);
+  const run r = run_of(with(plain(), &without_flow, &params), NULL);
+  const msr_effect *effect;
+  const size_t e = find(&r, "mine", &effect);
+  assert_true(effect->on && effect->force == &without_flow);
+  assert_string_equal(effect->reason, "asked for");
+  assert_int_equal(prepares, 1);
+  // drag by the midpoint rule is within (c h / 2 m)^3 / 6 of drag by its own flow, step by step
+  const run built_in = run_of(drag(), NULL);
+  const msr_view a = msr_state_view(r.state), b = msr_state_view(built_in.state);
+  for (size_t i = 0; i < a.n; i++) assert_true(fabs(a.vx[i] - b.vx[i]) < 1e-6);
+  assert_false(msr_state_hash(r.state) == msr_state_hash(built_in.state));
+  end(built_in);
+  const uint64_t before = msr_state_calls(r.state, e);
+  adds = 0;
+  assert_int_equal(msr_state_step(r.state, ITERATIONS, NULL), MSR_OK);
+  assert_int_equal(msr_state_calls(r.state, e) - before, 2 * ITERATIONS); // half a step at each end
+  assert_int_equal(adds, 2 * 2 * ITERATIONS); // two by the midpoint rule
+  end(r);
+  assert_int_equal(releases, 1);
+}
+
+static void my_flow_takes_the_place_of_add(void **unused) {
+  (void)unused;
+  const mine params = counting(0.1);
+  for (int i = 0; i < 2; i++) {
+    const run r = run_of(with(plain(), &with_flow, &params), i ? &msr_integrator_rk4 : NULL);
+    adds = flows = 0;
+    assert_int_equal(msr_state_step(r.state, ITERATIONS, NULL), MSR_OK);
+    assert_int_equal(adds, i ? 4 * ITERATIONS : 0); // rk4 takes it through a
+    assert_int_equal(flows, i ? 0 : 2 * ITERATIONS);
+    end(r);
+  }
+}
+
+static void my_idle_force_costs_nothing(void **unused) {
+  (void)unused;
+  mine params = counting(0.1);
+  params.idle = true;
+  const run r = run_of(with(plain(), &without_flow, &params), NULL), never = run_of(plain(), NULL);
+  const msr_effect *effect;
+  find(&r, "mine", &effect);
+  assert_false(effect->on);
+  assert_string_equal(effect->reason, "of rest");
+  assert_true(msr_state_hash(r.state) == msr_state_hash(never.state));
+  assert_true(msr_plan_describe(r.plan).state_bytes <=
+              msr_plan_describe(never.plan).state_bytes + 64); // a count of calls
+  end(r);
+  end(never);
+  assert_int_equal(adds + flows + prepares + releases, 0);
+}
+
+/* What a callback returns ends what called it, and comes back unchanged. */
+static void my_status_comes_back(void **unused) {
+  (void)unused;
+  const msr_status odd = MSR_EINTR;
+  msr_error err;
+  msr_plan *plan = NULL;
+  msr_state *state;
+  mine params = counting(0.1);
+
+  params.of_check = odd;
+  msr_scene *scene = plain();
+  assert_int_equal(msr_scene_add_force(scene, &without_flow, &params, &err), odd);
+  params.of_check = MSR_OK;
+  msr_scene_free(scene);
+
+  params.of_prepare = odd;
+  scene = with(plain(), &without_flow, &params);
+  assert_int_equal(msr_plan_create(scene, NULL, &plan, &err), odd);
+  assert_null(plan);
+  assert_int_equal(prepares, 1);
+  msr_scene_free(scene);
+  params.of_prepare = MSR_OK;
+
+  params.of_rates = odd;
+  scene = with(plain(), &without_flow, &params);
+  assert_int_equal(msr_plan_create(scene, NULL, &plan, &err), odd);
+  assert_int_equal(err.status, odd);
+  assert_null(plan);
+  assert_int_equal(releases, 1);
+  msr_scene_free(scene);
+  params.of_rates = MSR_OK;
+
+  params.of_add = params.of_flow = odd;
+  for (int flow = 0; flow < 2; flow++)
+    for (const msr_integrator *const *i = msr_integrators; *i; i++) {
+      scene = with(plain(), flow ? &with_flow : &without_flow, &params);
+      assert_int_equal(msr_plan_create(scene, &(msr_plan_options){.integrator = *i}, &plan, &err),
+                       MSR_OK);
+      assert_int_equal(msr_state_create(plan, &state, &err), MSR_OK);
+      double fx[6], fy[6];
+      assert_int_equal(msr_state_forces(state, fx, fy, &err), odd);
+      assert_string_equal(err.message, "force mine: interrupted");
+      assert_int_equal(msr_state_step(state, 1, &err), odd);
+      assert_string_equal(err.message, "iteration 0: interrupted");
+      assert_int_equal(msr_run(state, NULL, &err), odd);
+      msr_state_free(state);
+      msr_plan_free(plan);
+      msr_scene_free(scene);
+    }
+}
+
+/* A force that drives is followed by the guard, whose failures are the force's. */
+static void my_driving_force_is_followed(void **unused) {
+  (void)unused;
+  static const msr_force driving = {.name = "driving",
+                                    .summary = "drives",
+                                    .uses_velocity = true,
+                                    .params_size = sizeof(mine),
+                                    .scratch_size = sizeof(uint64_t),
+                                    .add = my_add};
+  mine params = counting(-1);
+  const run r = run_of(with(plain(), &driving, &params), NULL);
+  const int before = adds;
+  assert_int_equal(msr_state_check(r.state, NULL), MSR_OK);
+  assert_true(adds > before);
+  end(r);
+  params.of_add = MSR_EIO;
+  msr_scene *scene = with(plain(), &driving, &params);
+  run failing;
+  assert_int_equal(msr_plan_create(scene, NULL, &failing.plan, NULL), MSR_OK);
+  assert_int_equal(msr_state_create(failing.plan, &failing.state, NULL), MSR_OK);
+  msr_error err;
+  assert_int_equal(msr_state_check(failing.state, &err), MSR_EIO);
+  assert_string_equal(err.message, "a force: input or output failed");
+  msr_scene_free(scene);
+  end(failing);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_effect_is_tested),
+      cmocka_unit_test(what_is_off_changes_no_bit),
+      cmocka_unit_test(what_is_on_is_called),
+      cmocka_unit_test(what_is_on_acts),
+      cmocka_unit_test(calls_are_as_few_as_can_be),
+      cmocka_unit_test(no_random_number_without_gusts),
+      cmocka_unit_test(without_masses_all_is_off),
+      cmocka_unit_test(effects_are_in_the_order_in_which_they_act),
+      cmocka_unit_test(reasons_say_what_is_meant),
+      cmocka_unit_test(my_force_is_treated_as_built_in),
+      cmocka_unit_test(my_flow_takes_the_place_of_add),
+      cmocka_unit_test(my_idle_force_costs_nothing),
+      cmocka_unit_test(my_status_comes_back),
+      cmocka_unit_test(my_driving_force_is_followed),
+  };
+  return cmocka_run_group_tests_name("effects", tests, NULL, NULL);
+}

@@ -1,0 +1,306 @@
+/* test_renderer.c - drawing: the first frame is the scene, a scaled one its magnification, and no
+ * state, however far astray, does harm. */
+#include "msr.h"
+
+#include <float.h>
+#include <limits.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define LENGTH(array) (sizeof(array) / sizeof *(array))
+#define NO_NUMBER     ((double)NAN)
+#define INFINITE      ((double)INFINITY)
+
+/* ---- Pictures of letters */
+
+static const struct colour {
+  char letter;
+  unsigned char rgb[3];
+} colours[] = {{'.', {255, 255, 255}}, {'#', {0, 0, 0}},     {'o', {255, 0, 0}}, {'g', {0, 160, 0}},
+               {'b', {0, 0, 255}},     {'y', {200, 200, 0}}, {'d', {0, 0, 64}}};
+
+static const unsigned char *rgb_of(char letter) {
+  size_t i = 0;
+  while (colours[i].letter != letter) i++;
+  return colours[i].rgb;
+}
+
+static msr_picture *paint(const char *art) {
+  const size_t width = strcspn(art, "\n"), height = strlen(art) / (width + 1);
+  msr_picture *picture;
+  assert_int_equal(msr_picture_create(width, height, &picture, NULL), MSR_OK);
+  for (size_t p = 0; p < width * height; p++)
+    memcpy(picture->rgb + 3 * p, rgb_of(art[p + p / width]), 3);
+  return picture;
+}
+
+static msr_picture *random_picture(size_t most) {
+  msr_picture *picture;
+  const size_t width = 1 + (size_t)rand() % most, height = 1 + (size_t)rand() % most;
+  assert_int_equal(msr_picture_create(width, height, &picture, NULL), MSR_OK);
+  for (size_t p = 0; p < width * height; p++)
+    memcpy(picture->rgb + 3 * p, colours[(size_t)rand() % LENGTH(colours)].rgb, 3);
+  return picture;
+}
+
+static void assert_same_picture(const msr_picture *a, const msr_picture *b) {
+  assert_true(a->width == b->width && a->height == b->height);
+  assert_memory_equal(a->rgb, b->rgb, 3 * a->width * a->height);
+}
+
+/* ---- A state and its renderer */
+
+typedef struct drawing {
+  msr_plan *plan;
+  msr_state *state;
+  msr_renderer *renderer;
+} drawing;
+
+static drawing drawing_of_scene(msr_scene *scene, const msr_style *style) {
+  drawing d;
+  assert_int_equal(msr_plan_create(scene, NULL, &d.plan, NULL), MSR_OK);
+  assert_int_equal(msr_state_create(d.plan, &d.state, NULL), MSR_OK);
+  assert_int_equal(msr_renderer_create(d.plan, style, &d.renderer, NULL), MSR_OK);
+  msr_scene_free(scene);
+  return d;
+}
+
+static msr_scene *scene_of(const msr_picture *picture) {
+  static const msr_conf conf = {0.005, 9.8, 0.1, 1500, 1, 1};
+  msr_scene *scene;
+  assert_int_equal(msr_scene_from_picture("art", picture, &conf, NULL, &scene, NULL), MSR_OK);
+  return scene;
+}
+
+static drawing drawing_of(const char *art, const msr_style *style) {
+  msr_picture *picture = paint(art);
+  const drawing d = drawing_of_scene(scene_of(picture), style);
+  msr_picture_free(picture);
+  return d;
+}
+
+static void end(drawing d) {
+  msr_renderer_free(d.renderer);
+  msr_state_free(d.state);
+  msr_plan_free(d.plan);
+}
+
+static void assert_draws(drawing d, const char *art) {
+  msr_picture *due = paint(art);
+  assert_same_picture(msr_renderer_draw(d.renderer, d.state), due);
+  msr_picture_free(due);
+}
+
+/* ---- The start */
+
+static void the_first_frame_is_the_scene(void **unused) {
+  (void)unused;
+  for (int i = 0; i < 200; i++) {
+    msr_picture *picture = random_picture(12);
+    const drawing d = drawing_of_scene(scene_of(picture), i % 2 ? &(msr_style){.scale = 1} : NULL);
+    assert_same_picture(msr_renderer_draw(d.renderer, d.state), picture);
+    assert_same_picture(msr_renderer_draw(d.renderer, d.state), picture); // and again
+    end(d);
+    msr_picture_free(picture);
+  }
+}
+
+/* At scale N each pixel of the scene is a block of N x N. */
+static void a_scaled_frame_is_a_magnification(void **unused) {
+  (void)unused;
+  for (unsigned scale = 1; scale < 9; scale++)
+    for (int i = 0; i < 10; i++) {
+      msr_picture *picture = random_picture(8);
+      const drawing d = drawing_of_scene(scene_of(picture), &(msr_style){.scale = scale});
+      const msr_picture *frame = msr_renderer_draw(d.renderer, d.state);
+      assert_true(frame->width == scale * picture->width);
+      assert_true(frame->height == scale * picture->height);
+      for (size_t p = 0; p < frame->width * frame->height; p++) {
+        const size_t column = p % frame->width / scale, row = p / frame->width / scale;
+        const unsigned char *due = picture->rgb + 3 * (row * picture->width + column);
+        assert_memory_equal(frame->rgb + 3 * p, due, 3);
+      }
+      end(d);
+      msr_picture_free(picture);
+    }
+}
+
+/* ---- Anywhere else */
+
+/* A mass colours the pixel that it is in: y is up, and a pixel owns its lower and left edges, as
+ * it does where supports are met. */
+static void a_mass_is_drawn_where_it_is(void **unused) {
+  (void)unused;
+  static const struct {
+    double x, y;
+    const char *art;
+  } rows[] = {
+      {0.5, 2.5, "o..\n...\n###\n"},     {1.5, 1.5, "...\n.o.\n###\n"},
+      {1.999, 1.001, "...\n.o.\n###\n"}, {2.999, 2.999, "..o\n...\n###\n"},
+      {0, 1.5, "...\no..\n###\n"},       {2, 1.5, "...\n..o\n###\n"},
+      {1.5, 2, ".o.\n...\n###\n"},       {1.5, 1, "...\n.o.\n###\n"}, // on the floor, not in it
+      {1.5, 0.5, "...\n...\n###\n"},                                  // supports stay on top
+  };
+  const drawing d = drawing_of("o..\n...\n###\n", NULL);
+  for (size_t i = 0; i < LENGTH(rows); i++) {
+    const msr_arrays a = msr_state_edit(d.state);
+    a.x[0] = rows[i].x, a.y[0] = rows[i].y;
+    assert_draws(d, rows[i].art);
+  }
+  end(d);
+}
+
+/* Its square is clipped at each side; further away nothing is seen of it. */
+static void masses_outside_are_clipped(void **unused) {
+  (void)unused;
+  static const struct {
+    double x, y;
+    size_t seen; /* pixels of the 4 x 4 block that are in the frame */
+  } rows[] = {{2, 2, 16},  {0, 2, 8},    {4, 2, 8},     {2, 0, 8},       {2, 4, 8},
+              {0, 0, 4},   {4, 4, 4},    {-0.25, 2, 4}, {4.25, 4.25, 1}, {-0.5, 2, 0},
+              {4.5, 2, 0}, {2, -0.5, 0}, {2, 4.5, 0},   {-7, 2, 0},      {2, 1e9, 0}};
+  const drawing d = drawing_of("o...\n....\n....\n....\n", &(msr_style){.scale = 4});
+  for (size_t i = 0; i < LENGTH(rows); i++) {
+    const msr_arrays a = msr_state_edit(d.state);
+    a.x[0] = rows[i].x, a.y[0] = rows[i].y;
+    const msr_picture *frame = msr_renderer_draw(d.renderer, d.state);
+    size_t seen = 0;
+    for (size_t p = 0; p < frame->width * frame->height; p++)
+      seen += memcmp(frame->rgb + 3 * p, rgb_of('o'), 3) == 0;
+    assert_int_equal(seen, rows[i].seen);
+  }
+  end(d);
+}
+
+/* What is no place, or too far for any integer, is drawn nowhere. */
+static void places_that_are_none_are_not_drawn(void **unused) {
+  (void)unused;
+  static const double odd[] = {NO_NUMBER, INFINITE, -INFINITE, DBL_MAX, -DBL_MAX,
+                               1e18,      -1e18,    0x1p63,    0x1p64,  -0x1p64};
+  for (unsigned scale = 1; scale < 4; scale += 2) {
+    const drawing d = drawing_of("oo\n##\n", &(msr_style){.scale = scale});
+    for (size_t i = 0; i < LENGTH(odd); i++)
+      for (int which = 1; which < 4; which++) {
+        msr_arrays a = msr_state_edit(d.state);
+        a.x[0] = which & 1 ? odd[i] : 0.5;
+        a.y[0] = which & 2 ? odd[i] : 1.5;
+        const msr_picture *frame = msr_renderer_draw(d.renderer, d.state);
+        size_t red = 0;
+        for (size_t p = 0; p < frame->width * frame->height; p++)
+          red += memcmp(frame->rgb + 3 * p, rgb_of('o'), 3) == 0;
+        assert_int_equal(red, scale * scale); // the other mass
+      }
+    end(d);
+  }
+}
+
+/* Masses are drawn in their order, the last on top. */
+static void later_masses_are_on_top(void **unused) {
+  (void)unused;
+  const drawing d = drawing_of("og.\n", NULL);
+  msr_arrays a = msr_state_edit(d.state);
+  a.x[0] = a.x[1] = 2.5;
+  assert_draws(d, "..g\n");
+  end(d);
+}
+
+static void masses_by_hand_have_their_colours(void **unused) {
+  (void)unused;
+  msr_picture *picture = paint("o..\n");
+  msr_scene *scene = scene_of(picture);
+  msr_mass mass = {.x = 1.5, .y = 0.5, .m = 1};
+  memcpy(mass.rgb, rgb_of('b'), 3);
+  assert_int_equal(msr_scene_add_mass(scene, &mass, NULL, NULL), MSR_OK);
+  const drawing d = drawing_of_scene(scene, NULL);
+  assert_draws(d, "ob.\n");
+  msr_picture_free(picture);
+  end(d);
+}
+
+/* ---- Stripes */
+
+static void every_other_stripe_has_another_colour(void **unused) {
+  (void)unused;
+  static const struct {
+    unsigned stripes;
+    unsigned char colour[3];
+    const char *art;
+  } rows[] = {
+      {0, {0, 0, 255}, "oo#\noo.\noyo\n.oo\noo.\n"},
+      {1, {0}, "oo#\ngg.\noyo\n.gg\noo.\n"},
+      {2, {0}, "oo#\noo.\nggg\n.gg\noo.\n"},
+      {2, {0, 0, 255}, "oo#\noo.\nbbb\n.bb\noo.\n"},
+      {3, {0, 0, 255}, "oo#\noo.\noyo\n.bb\nbb.\n"},
+      {UINT_MAX, {0, 0, 255}, "oo#\noo.\noyo\n.oo\noo.\n"},
+  };
+  for (size_t i = 0; i < LENGTH(rows); i++) {
+    msr_style style = {.stripes = rows[i].stripes};
+    memcpy(style.stripe_colour, rows[i].colour, 3);
+    const drawing d = drawing_of("oo#\noo.\noyo\n.oo\noo.\n", &style);
+    assert_draws(d, rows[i].art);
+    end(d);
+  }
+}
+
+/* A stripe's colour goes with the mass; rows of the scene count, above the picture too. */
+static void stripes_move_with_their_masses(void **unused) {
+  (void)unused;
+  msr_picture *picture = paint("oo.\noo.\n");
+  msr_scene *scene = scene_of(picture);
+  msr_mass above = {.x = 2.5, .y = 2.5, .m = 1}; // one row above the picture: the stripe before
+  memcpy(above.rgb, rgb_of('o'), 3);
+  assert_int_equal(msr_scene_add_mass(scene, &above, NULL, NULL), MSR_OK);
+  const drawing d = drawing_of_scene(scene, &(msr_style){.stripes = 1});
+  assert_draws(d, "oo.\ngg.\n");
+  msr_arrays a = msr_state_edit(d.state);
+  for (size_t i = 0; i < 4; i++) a.y[i] = 2 - a.y[i];
+  a.y[4] = 1.5;
+  assert_draws(d, "ggg\noo.\n");
+  msr_picture_free(picture);
+  end(d);
+}
+
+/* ---- What can't be drawn */
+
+static void frames_that_cannot_be_are_refused(void **unused) {
+  (void)unused;
+  msr_scene *scene;
+  msr_plan *plan;
+  msr_renderer *renderer = NULL;
+  msr_error err;
+  assert_int_equal(msr_scene_create(&scene, NULL), MSR_OK);
+  assert_int_equal(msr_plan_create(scene, NULL, &plan, NULL), MSR_OK);
+  assert_int_equal(msr_renderer_create(plan, NULL, &renderer, &err), MSR_EUSAGE);
+  assert_string_equal(err.message, "a scene without a picture has no frames");
+  msr_plan_free(plan);
+  msr_scene_free(scene);
+  const drawing d = drawing_of("o\n", NULL);
+  assert_int_equal(msr_renderer_create(d.plan, &(msr_style){.scale = UINT_MAX}, &renderer, &err),
+                   MSR_EUSAGE);
+  assert_true(strlen(err.message) > 0);
+  assert_null(renderer);
+  end(d);
+  msr_renderer_free(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_first_frame_is_the_scene),
+      cmocka_unit_test(a_scaled_frame_is_a_magnification),
+      cmocka_unit_test(a_mass_is_drawn_where_it_is),
+      cmocka_unit_test(masses_outside_are_clipped),
+      cmocka_unit_test(places_that_are_none_are_not_drawn),
+      cmocka_unit_test(later_masses_are_on_top),
+      cmocka_unit_test(masses_by_hand_have_their_colours),
+      cmocka_unit_test(every_other_stripe_has_another_colour),
+      cmocka_unit_test(stripes_move_with_their_masses),
+      cmocka_unit_test(frames_that_cannot_be_are_refused),
+  };
+  return cmocka_run_group_tests_name("renderer", tests, NULL, NULL);
+}
