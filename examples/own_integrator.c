@@ -3,8 +3,8 @@
  * q'' = -q^3, without a scene; msr_plan_options.integrator takes the same struct for a scene. */
 #include <msr.h>
 
+#include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 static msr_status drift(const msr_system *s, double h, double *q, double *v) {
   if (s->drift) return s->drift(s->self, h, v, q, v);
@@ -12,17 +12,16 @@ static msr_status drift(const msr_system *s, double h, double *q, double *v) {
   return MSR_OK;
 }
 
-/* Drifts and kicks in turn; either row reads the same backwards, so that the method is reversible.
- */
+/* Drifts and kicks in turn; both rows read the same backwards, hence the method is reversible. */
 static msr_status step(const msr_integrator *self, const msr_system *s,
                        const msr_interval *interval, double *q, double *v, double *a) {
   static const double x = 0.1786178958448091, l = -0.2123418310626054, c = -0.06626458266981849;
   const double drifts[] = {x, c, 1 - 2 * (c + x), c, x}, kicks[] = {0.5 - l, l, l, 0.5 - l};
-  double t = interval->t;
+  double share = 0;
   (void)self;
   for (int k = 0; k < 4; k++) {
     msr_status status = drift(s, drifts[k] * interval->h, q, v);
-    t += drifts[k] * interval->h;
+    const double t = msr_interval_time(interval, share += drifts[k]);
     if (status == MSR_OK) status = s->acceleration(s->self, t, q, v, a);
     if (status != MSR_OK) return status;
     for (size_t i = 0; i < s->n; i++) v[i] += kicks[k] * interval->h * a[i];
@@ -49,10 +48,7 @@ static msr_status quartic(void *self, double t, const double *q, const double *v
 static double at_ten(unsigned steps) {
   const msr_system system = {.n = 1, .acceleration = quartic};
   double q = 1, v = 0;
-  msr_error err;
-  if (msr_integrate(&pefrl, &system, 0, 10.0 / steps, steps, &q, &v, &err) == MSR_OK) return q;
-  fprintf(stderr, "own_integrator: %s\n", err.message);
-  exit(EXIT_FAILURE);
+  return msr_integrate(&pefrl, &system, 0, 10.0 / steps, steps, &q, &v, NULL) ? (double)NAN : q;
 }
 
 int main(void) {

@@ -1,6 +1,5 @@
 /* own_sink.c - a sink of one's own: a ball falls and bounces on the terminal, frame after frame.
- * Introduces msr_sink, which takes the frames of a run; msr_renderer_draw makes a picture of each.
- */
+ * Introduces msr_sink, which takes the frames of a run; msr_renderer_draw makes its pictures. */
 #include <msr.h>
 
 #include <stdio.h>
@@ -38,12 +37,11 @@ static msr_status print(void *renderer, const msr_state *state, uint64_t frame, 
   const unsigned char *rgb = msr_renderer_draw(renderer, state)->rgb;
   (void)e;
   printf("frame %d, t = %g s\n", (int)frame, msr_state_view(state).t);
-  for (size_t i = 0; i < PIXELS; i++)
-    printf("%c%s",
-           rgb[3 * i + 2] == 0 ? '='
-           : rgb[3 * i] == 0   ? '#'
-                               : ' ',
-           i % WIDTH == WIDTH - 1 ? "\n" : "");
+  for (size_t i = 0; i < PIXELS; i++) {
+    const bool air = rgb[3 * i] != 0, floor = rgb[3 * i + 2] == 0;
+    putchar(air ? ' ' : floor ? '=' : '#');
+    if (i % WIDTH == WIDTH - 1) putchar('\n');
+  }
   return MSR_OK;
 }
 

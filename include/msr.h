@@ -261,6 +261,11 @@ typedef struct msr_interval {
   double t, h, end;
 } msr_interval;
 
+/* The time at a share c of an interval, for stages; at 1 exactly its end, where the next begins. */
+static inline double msr_interval_time(const msr_interval *interval, double c) {
+  return c >= 1 ? interval->end : interval->t + c * interval->h;
+}
+
 /* A method. Its declarations are what tests try to refute. */
 typedef struct msr_integrator {
   const char *name;         /* one word */
@@ -517,23 +522,26 @@ MSR_API const msr_picture *msr_renderer_draw(msr_renderer *renderer, const msr_s
 typedef struct msr_sink {
   void *self;
   msr_status (*write)(void *self, const msr_state *state, uint64_t frame, msr_error *err);
-  /* Finishes and frees; what was written so far stays and is whole. */
+  /* Finishes and frees; what was written so far stays and is whole. NULL: nothing to do. */
   msr_status (*close)(void *self, msr_error *err);
 } msr_sink;
 
-/* Frames as binary PPM: DIR/frame-000000.ppm ..., each written whole or not at all; DIR is made.
- * "-" writes them one after the other to standard output. MSR_EUSAGE if DIR holds frames and
- * `overwrite` is false; with it, frames that were there are removed first. MSR_EIO, MSR_ENOMEM. */
+/* Frames as binary PPM: DIR/frame-000000.ppm ..., each written whole or not at all; DIR
+ * and those above it are made.
+ * "-" writes them one after the other to standard output. `style` may be NULL. MSR_EUSAGE if DIR
+ * holds frames and `overwrite` is false; with it, frames that were there are removed first.
+ * MSR_EIO, MSR_ENOMEM. */
 MSR_API msr_status msr_frames_open(const msr_plan *plan, const char *dir, const msr_style *style,
                                    bool overwrite, msr_sink *sink, msr_error *err);
 
 /* CSV with the header frame,time,kinetic,spring,gravity,total,px,py,contacts,longest: energies,
  * momentum, contacts since the last frame, longest spring over its rest length. "-" is standard
- * output. MSR_EIO, MSR_ENOMEM. */
+ * output; a file appears when the sink is closed. MSR_EIO, MSR_ENOMEM. */
 MSR_API msr_status msr_stats_open(const msr_plan *plan, const char *path, msr_sink *sink,
                                   msr_error *err);
 
-/* NumPy array, float64 [frames, masses, 4]: x, y, vx, vy. MSR_EIO, MSR_ENOMEM. */
+/* NumPy array, float64 [frames, masses, 4]: x, y, vx, vy; it appears when the sink is closed.
+ * MSR_EIO, MSR_ENOMEM. */
 MSR_API msr_status msr_trajectory_open(const msr_plan *plan, const char *path, msr_sink *sink,
                                        msr_error *err);
 
@@ -549,8 +557,10 @@ typedef struct msr_run_options {
   void *data;
 } msr_run_options;
 
-/* Runs the state from where it is to the plan's last iteration. Every frame is checked before it
- * goes to the sinks, which stay open. MSR_EUNSTABLE, or what a force, a sink or poll returns. */
+/* Runs the state from where it is to the plan's last iteration; `options` may be NULL. Every frame
+ * is checked before it goes to the sinks, which stay open; none goes twice, and those that the
+ * state has already passed don't come back. MSR_EUNSTABLE, or what a force, a sink or poll returns.
+ */
 MSR_API msr_status msr_run(msr_state *state, const msr_run_options *options, msr_error *err);
 
 #ifdef __cplusplus

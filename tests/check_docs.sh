@@ -37,7 +37,7 @@ cp examples/scenes/assignment.ppm "$tmp/scene.ppm"
 cp examples/scenes/assignment.conf "$tmp/scene.conf"
 (cd "$tmp" && ./program)
 
-for document in README.md docs/*.md; do
+for document in README.md docs/*.md examples/*.md; do
   grep -o '](\([^)#]*\))' "$document" | sed 's/^](//; s/)$//' | grep -v '^[a-z]*:' | while read -r link; do
     [ -e "$(dirname "$document")/$link" ] || { echo "$document links to $link: not there"; exit 1; }
   done

@@ -326,7 +326,8 @@ static void reasons_say_what_is_meant(void **unused) {
 typedef struct mine {
   int *adds, *flows, *prepares, *releases;
   msr_status of_check, of_prepare, of_add, of_flow, of_rates;
-  double c; /* F = -c v */
+  uint64_t *uses; /* of its scratch; NULL: not counted */
+  double c;       /* F = -c v */
   bool idle;
 } mine;
 
@@ -364,8 +365,9 @@ static msr_status my_add(const void *self, void *scratch, const msr_view *s, dou
                          double *fy) {
   const mine *p = self;
   ++*p->adds;
-  ++*(uint64_t *)scratch;
   assert_true((uintptr_t)scratch % sizeof(double) == 0);
+  ++*(uint64_t *)scratch;
+  if (p->uses) assert_int_equal(*(uint64_t *)scratch, ++*p->uses);
   for (size_t i = 0; i < s->n; i++) fx[i] -= p->c * s->vx[i], fy[i] -= p->c * s->vy[i];
   return p->of_add;
 }
@@ -433,6 +435,19 @@ static void my_flow_takes_the_place_of_add(void **unused) {
     assert_int_equal(adds, i ? 4 * ITERATIONS : 0); // rk4 takes it through a
     assert_int_equal(flows, i ? 0 : 2 * ITERATIONS);
     end(r);
+  }
+}
+
+/* Scratch is zero at first, and each force's and each state's own. */
+static void my_forces_have_scratch_of_their_own(void **unused) {
+  (void)unused;
+  for (int again = 0; again < 2; again++) {
+    uint64_t uses[2] = {0};
+    mine first = counting(0.1), second = first;
+    first.uses = &uses[0], second.uses = &uses[1];
+    second.c = 0.2;
+    end(run_of(with(with(plain(), &without_flow, &first), &without_flow, &second), NULL));
+    assert_true(uses[0] > 0 && uses[1] > 0);
   }
 }
 
@@ -544,6 +559,7 @@ int main(void) {
       cmocka_unit_test(reasons_say_what_is_meant),
       cmocka_unit_test(my_force_is_treated_as_built_in),
       cmocka_unit_test(my_flow_takes_the_place_of_add),
+      cmocka_unit_test(my_forces_have_scratch_of_their_own),
       cmocka_unit_test(my_idle_force_costs_nothing),
       cmocka_unit_test(my_status_comes_back),
       cmocka_unit_test(my_driving_force_is_followed),

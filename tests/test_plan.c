@@ -112,6 +112,56 @@ static void a_lattice_has_so_many_springs(void **unused) {
   }
 }
 
+/* Are pixels p and q of a picture, both masses, next to each other? */
+static bool beside(const msr_picture *picture, size_t p, size_t q, int neighbours) {
+  const size_t w = picture->width;
+  const double dx = fabs((double)(p % w) - (double)(q % w));
+  const double dy = fabs((double)(p / w) - (double)(q / w));
+  return neighbours == 8 ? dx <= 1 && dy <= 1 : dx + dy <= 1;
+}
+
+/* Of a picture with holes: every pair of neighbours once, and no other. */
+static void springs_join_neighbours(void **unused) {
+  (void)unused;
+  enum { SIDE = 9 };
+  for (unsigned seed = 0; seed < 40; seed++) {
+    const int neighbours = seed % 2 ? 8 : 4;
+    size_t pixel[SIDE * SIDE], n = 0, pairs = 0;
+    static int joined[SIDE * SIDE][SIDE * SIDE];
+    memset(joined, 0, sizeof joined);
+    msr_picture *picture;
+    msr_scene *scene;
+    msr_state *state;
+    assert_int_equal(msr_picture_create(SIDE, SIDE, &picture, NULL), MSR_OK);
+    for (size_t p = 0; p < SIDE * SIDE; p++) {
+      if ((p * 7919 + seed * 104729) % 11 < 4) continue;
+      picture->rgb[3 * p + 1] = 0;
+      pixel[n++] = p;
+    }
+    const msr_scene_options options = {.neighbours = neighbours};
+    assert_int_equal(msr_scene_from_picture("p", picture, &usual, &options, &scene, NULL), MSR_OK);
+    msr_plan *plan = plan_with(scene, NULL, 0);
+    assert_int_equal(msr_state_create(plan, &state, NULL), MSR_OK);
+    const msr_springs *springs = msr_state_view(state).springs;
+    for (size_t r = 0; r < springs->n_runs; r++) {
+      const msr_run_of_springs *run = &springs->run[r];
+      for (size_t i = run->first; i < run->first + run->count; i++)
+        joined[i][(size_t)((ptrdiff_t)i + run->offset)]++;
+    }
+    for (size_t i = 0; i < n; i++)
+      for (size_t j = i + 1; j < n; j++) {
+        const bool near_by = beside(picture, pixel[i], pixel[j], neighbours);
+        assert_int_equal(joined[i][j] + joined[j][i], near_by);
+        pairs += near_by;
+      }
+    assert_int_equal(springs->n, pairs);
+    assert_true(msr_state_energy(state).spring == 0);
+    msr_state_free(state);
+    msr_plan_free(plan);
+    msr_picture_free(picture);
+  }
+}
+
 /* Each mass of the lowest row is tied to the supports beside it: 1, or 3 with diagonals. */
 static void attached_masses_have_anchors(void **unused) {
   (void)unused;
@@ -514,6 +564,7 @@ static void pixels_and_masses_are_one_to_one(void **unused) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_lattice_has_so_many_springs),
+      cmocka_unit_test(springs_join_neighbours),
       cmocka_unit_test(attached_masses_have_anchors),
       cmocka_unit_test(anchors_start_at_rest),
       cmocka_unit_test(stable_step_of_lattices),

@@ -526,8 +526,12 @@ static void a_full_disk_is_told(void **unused) {
   (void)unused;
   msr_sink sink;
   msr_error err = {.message = ""};
+  msr_state *state = new_state(plan);
   assert_int_equal(msr_stats_open(plan, "/dev/full", &sink, &err), MSR_OK);
-  assert_int_equal(run_into(plan, &sink, 1, &err), MSR_EIO);
+  assert_int_equal(msr_run(state, &(msr_run_options){.sinks = &sink, .n_sinks = 1}, &err), MSR_EIO);
+  assert_int_equal(msr_state_iteration(state), 0); // a row is handed on at once
+  assert_int_equal(msr_sink_close(&sink, NULL), MSR_EIO);
+  msr_state_free(state);
   assert_string_equal(err.message,
                       "/dev/full: cannot write it: No space left on device; free some space");
   err.message[0] = '\0';

@@ -284,7 +284,7 @@ static void files_are_loaded(void **unused) {
 
 /* Two masses of a picture, and one added. */
 static msr_scene *three_masses(void) {
-  msr_scene *scene = scene_of("oo.#\n");
+  msr_scene *scene = scene_of("oo.#\n....\n");
   assert_int_equal(msr_scene_add_mass(scene, &(msr_mass){.x = 2.5, .y = 0.5, .m = 1}, NULL, NULL),
                    MSR_OK);
   return scene;
@@ -328,8 +328,8 @@ static void bad_masses_are_refused(void **unused) {
       {{.m = -1}, "a mass must be finite and above 0, not -1"},
       {{.m = INFINITE}, "a mass must be finite and above 0, not inf"},
       {{.m = NO_NUMBER}, "a mass must be finite and above 0, not nan"},
-      {{.x = 3, .y = 0, .m = 1}, "a mass at (3, 0) is inside a support"},
-      {{.x = 3.999, .y = 0.999, .m = 1}, "a mass at (3.999, 0.999) is inside a support"},
+      {{.x = 3, .y = 1, .m = 1}, "a mass at (3, 1) is inside a support"},
+      {{.x = 3.999, .y = 1.999, .m = 1}, "a mass at (3.999, 1.999) is inside a support"},
   };
   msr_scene *scene = three_masses();
   msr_error err;
@@ -338,7 +338,7 @@ static void bad_masses_are_refused(void **unused) {
     assert_refused(scene, msr_scene_add_mass(scene, &cases[i].mass, &index, &err), &err,
                    cases[i].message);
   assert_int_equal(index, 99);
-  static const double beside[][2] = {{4, 0.5}, {3.5, 1}, {3.5, -0.001}, {2.999, 0.5}, {1e300, 0}};
+  static const double beside[][2] = {{4, 1.5}, {3.5, 2}, {3.5, 0.999}, {2.999, 1.5}, {1e300, 0}};
   for (size_t i = 0; i < LENGTH(beside); i++) {
     const msr_mass mass = {.x = beside[i][0], .y = beside[i][1], .m = 1};
     assert_int_equal(msr_scene_add_mass(scene, &mass, &index, NULL), MSR_OK);
@@ -416,7 +416,7 @@ static void bad_forces_are_refused(void **unused) {
       {&msr_force_damping, &(msr_damping){INFINITE},
        "damping must be a finite number of kg/s, 0 or more"},
       {&msr_force_wind, &(msr_wind){.gust = -1},
-       "wind: speed must be finite, drag, gust and gust time finite and 0 or more"},
+       "wind: speed must be finite, drag and gust finite and 0 or more, gust time 1e-06 s or more"},
       {&msr_force_push, &(msr_push){0, NO_NUMBER, 0}, "a push must be a finite force"},
   };
   msr_scene *scene = three_masses();

@@ -26,9 +26,4 @@ void *msri_grow(void *block, size_t *capacity, size_t count, size_t size, const 
 static inline double msri_min(double a, double b) { return a < b ? a : b; }
 static inline double msri_max(double a, double b) { return a > b ? a : b; }
 
-/* The time at a share of an interval; at 1 exactly its end, where the next one begins. */
-static inline double msri_interval_time(const msr_interval *interval, double share) {
-  return share >= 1 ? interval->end : interval->t + share * interval->h;
-}
-
 #endif

@@ -122,12 +122,12 @@ msr_status msri_file_read(const char *path, size_t limit, unsigned char **bytes,
 
 /* ---- Writing */
 
-/* The open descriptor that a path such as /dev/stdout or /dev/fd/3 stands for, or -1. Opening the
- * path anew would write over what the descriptor already wrote. */
+/* The open descriptor that a path such as -, /dev/stdout or /dev/fd/3 stands for, or -1. Opening
+ * the path anew would write over what the descriptor already wrote. */
 static int standing_for(const char *path) {
   static const char directory[] = "/dev/fd/";
   const size_t n = sizeof directory - 1;
-  if (strcmp(path, "/dev/stdout") == 0) return STDOUT_FILENO;
+  if (strcmp(path, "-") == 0 || strcmp(path, "/dev/stdout") == 0) return STDOUT_FILENO;
   if (strcmp(path, "/dev/stderr") == 0) return STDERR_FILENO;
   if (strncmp(path, directory, n) != 0 || !path[n]) return -1;
   char *end;
@@ -202,7 +202,8 @@ msr_status msri_file_create(const char *path, msri_file *file, msr_error *err) {
   const int fd = open_direct(path, &mode);
   if (fd < 0 && !mode && errno != ENOENT) return msri_file_fail(path, "write", err);
   char *target = mode ? realpath(path, NULL) : NULL;
-  msr_status status = name_file(file, path, target ? target : path, err);
+  const char *shown = strcmp(path, "-") == 0 ? "standard output" : path;
+  msr_status status = name_file(file, shown, target ? target : path, err);
   free(target);
   if (!status) status = open_stream(file, fd, mode, err);
   if (status && fd >= 0) close(fd);

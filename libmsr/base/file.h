@@ -26,7 +26,7 @@ msr_status msri_file_read_if(const char *path, size_t limit, msri_file_accept *a
 
 /* A file being written. It takes its name when it is committed, in one rename, and keeps the
  * permissions of the one that it replaces; a link to a file is followed. What is no regular file (a
- * pipe, /dev/null, /dev/stdout) is written directly. */
+ * pipe, /dev/null, /dev/stdout, also called -) is written directly. */
 typedef struct msri_file {
   FILE *stream;    /* write here */
   char *path;      /* as it was asked for */

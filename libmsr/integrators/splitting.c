@@ -43,7 +43,7 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
   if (row->symmetric) status = damp(system, interval->t, h / 2, false, q, v);
   for (int s = 0; s < row->stages && status == MSR_OK; s++) {
     if (s > 0 || !row->symmetric)
-      status = accelerate(system, msri_interval_time(interval, share), q, v, a);
+      status = accelerate(system, msr_interval_time(interval, share), q, v, a);
     if (status != MSR_OK) return status;
     const double bh = row->kick[s] * h;
     for (size_t i = 0; i < system->n; i++) v[i] += bh * a[i];

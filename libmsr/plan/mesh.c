@@ -140,6 +140,7 @@ static int by_band_offset_and_first(const void *a, const void *b) {
 
 static msr_status tie_added(msri_mesh *mesh, const msr_scene *scene, msr_error *err) {
   const size_t n = scene->n_springs;
+  mesh->n_added = n;
   msri_scene_spring *sorted = msri_alloc(n, sizeof *sorted, "the springs", err);
   mesh->k = msri_alloc(n, sizeof *mesh->k, "the springs", err);
   mesh->L = msri_alloc(n, sizeof *mesh->L, "the springs", err);

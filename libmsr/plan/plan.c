@@ -54,21 +54,30 @@ static char *add_effect(msr_plan *plan, const char *name, bool on, const msr_for
   return reason;
 }
 
+/* The term's own copy of the parameters, compiled. */
+static msr_status compile_force(msri_term *term, const void *params, const msr_view *start,
+                                msr_error *err) {
+  const msr_force *force = term->force;
+  term->params = msri_alloc(1, force->params_size, "a force", err);
+  if (!term->params) return MSR_ENOMEM;
+  if (params) memcpy(term->params, params, force->params_size);
+  term->self = term->params;
+  if (!force->prepare) return MSR_OK;
+  const msr_status status = force->prepare(term->params, start, &term->made, err);
+  if (status != MSR_OK) free(term->params);
+  term->self = term->made;
+  return status;
+}
+
 static msr_status add_term(msr_plan *plan, const msr_force *force, const void *params,
                            const msr_view *start, msr_error *err) {
   char *reason = add_effect(plan, force->name, false, force);
   if (force->idle && force->idle(params, start, reason, MSR_MESSAGE_SIZE)) return MSR_OK;
   msri_term *term = &plan->term[plan->n_terms];
   *term = (msri_term){.force = force, .scratch = plan->scratch_bytes};
-  term->params = msri_alloc(1, force->params_size, "a force", err);
-  if (!term->params) return MSR_ENOMEM;
+  const msr_status status = compile_force(term, params, start, err);
+  if (status != MSR_OK) return status;
   plan->n_terms++;
-  if (params) memcpy(term->params, params, force->params_size);
-  if (force->prepare) {
-    const msr_status status = force->prepare(term->params, start, &term->made, err);
-    if (status != MSR_OK) return status;
-  }
-  term->self = force->prepare ? term->made : term->params;
   plan->effect[plan->n_effects - 1].on = true;
   plan->scratch_bytes += (force->scratch_size + 15) / 16 * 16;
   plan->midpoint |= force->uses_velocity && !force->flow && plan->figures.integrator->splits;
@@ -150,6 +159,7 @@ static void count_memory(msr_plan *plan) {
   f->plan_bytes = sizeof *plan + 3 * f->width * f->height + added * sizeof *plan->mass +
                   (plan->m ? f->masses * sizeof *plan->m : 0) +
                   mesh->run_capacity * sizeof *mesh->run +
+                  mesh->n_added * (sizeof *mesh->k + sizeof *mesh->L) +
                   mesh->anchor_capacity * sizeof *mesh->anchor +
                   (plan->contact.move ? f->width * f->height / 8 : 0);
   f->state_bytes = msri_state_bytes(plan);

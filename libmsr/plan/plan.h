@@ -21,7 +21,8 @@ typedef struct msri_mesh {
   msr_springs springs;
   msr_run_of_springs *run;
   msr_anchor *anchor;
-  double *k, *L;       /* [springs added by a program] */
+  double *k, *L; /* [n_added]: springs that a program added */
+  size_t n_added;
   double lattice_k;    /* of every spring of the picture */
   double lattice_L[2]; /* along a side, along a diagonal */
   size_t run_capacity, anchor_capacity;

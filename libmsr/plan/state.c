@@ -68,6 +68,7 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
   to->t = from->t;
   to->fresh = from->fresh;
   to->contacts = from->contacts;
+  to->frames = from->frames;
   to->guard = from->guard;
   memcpy((char *)to + l.q, (const char *)from + l.q, l.bytes - l.q);
 }
@@ -79,20 +80,20 @@ void msri_state_touched(msr_state *state) {
 
 /* ---- Reading */
 
-static uint64_t hash_doubles(uint64_t hash, const double *values, size_t n) {
+uint64_t msri_hash_words(uint64_t hash, const void *words, size_t n) {
   for (size_t i = 0; i < n; i++) {
     uint64_t word;
-    memcpy(&word, &values[i], sizeof word);
-    hash = (hash ^ word) * 0x100000001b3U;
+    memcpy(&word, (const char *)words + i * sizeof word, sizeof word);
+    hash = (hash ^ word) * UINT64_C(0x100000001b3);
   }
   return hash;
 }
 
 uint64_t msr_state_hash(const msr_state *state) {
   const size_t n = state->plan->figures.masses;
-  uint64_t hash = hash_doubles(0xcbf29ce484222325U, &state->t, 1);
-  hash = hash_doubles(hash, state->q, 2 * n);
-  return hash_doubles(hash, state->v, 2 * n);
+  uint64_t hash = msri_hash_words(MSRI_HASH_START, &state->t, 1);
+  hash = msri_hash_words(hash, state->q, 2 * n);
+  return msri_hash_words(hash, state->v, 2 * n);
 }
 
 msr_view msr_state_view(const msr_state *state) {

@@ -18,6 +18,7 @@ struct msr_state {
   double t;                    /* [s] */
   bool fresh;                  /* the integrator's workspace fits q and v */
   uint64_t contacts;
+  uint64_t frames; /* of a run that went to the sinks */
   msri_guard guard;
   double *q, *v;   /* x[n], y[n]; vx[n], vy[n] */
   double *work;    /* [integrator->vectors][2n] */
@@ -39,6 +40,10 @@ msr_status msri_state_add_forces(msr_state *state, const msr_view *view,
 
 /* As msr_state_energy, without momentum and the longest spring. */
 msr_energy msri_state_energies(const msr_state *state);
+
+/* FNV-1a over 8-byte words, from a hash so far. */
+#define MSRI_HASH_START UINT64_C(0xcbf29ce484222325)
+uint64_t msri_hash_words(uint64_t hash, const void *words, size_t n);
 
 /* Tells that q, v or t were changed from outside. */
 void msri_state_touched(msr_state *state);

@@ -77,7 +77,8 @@ static msr_status take(void *self, const msr_state *state, uint64_t frame, msr_e
   const msr_picture *picture = msr_renderer_draw(f->renderer, state);
   if (f->directory == 0) {
     const bool written = msri_ppm_write(f->stream.stream, picture);
-    return written ? msri_file_flush(&f->stream, err) : msri_file_fail("-", "write", err);
+    return written ? msri_file_flush(&f->stream, err)
+                   : msri_file_fail(f->stream.path, "write", err);
   }
   msri_format(f->path + f->directory, NAME_SIZE, "/frame-%06llu.ppm", (unsigned long long)frame);
   return msr_picture_write(picture, f->path, err);
@@ -92,7 +93,7 @@ static msr_status finish(void *self, msr_error *err) {
 }
 
 static msr_status open_place(frames *f, const char *dir, bool overwrite, msr_error *err) {
-  if (strcmp(dir, "-") == 0) return msri_file_create("/dev/stdout", &f->stream, err);
+  if (strcmp(dir, "-") == 0) return msri_file_create(dir, &f->stream, err);
   f->directory = strlen(dir);
   memcpy(f->path, dir, f->directory + 1);
   const msr_status status = make_directory(f->path, err);

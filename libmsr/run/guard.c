@@ -13,8 +13,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Energy below which nothing could be seen: one mass moved by this, against its springs. */
-static const double invisible = 0.01; /* [px] */
+/* A mass that moves less than this in a step hasn't run away, whatever its share of the energy: one
+ * that rests on a support is kicked by h g and reflected for ever. */
+static const double slow = 0.01; /* [px] */
 
 typedef struct energies {
   double moving;    /* kinetic and of springs */
@@ -64,20 +65,14 @@ static double allowance(const msr_plan_figures *f) {
   return swing > 0 ? 4 / msri_max(swing, 0.004) : 10;
 }
 
-static double mean_mass(const msr_view *s) {
-  double sum = 0;
-  for (size_t i = 0; i < s->n; i++) sum += msr_view_mass(s, i);
-  return s->n ? sum / (double)s->n : 0;
-}
+static double speed(const msr_view *s, size_t i) { return hypot(s->vx[i], s->vy[i]); }
 
 /* The first mass that isn't finite, else the fastest. */
 static size_t culprit(const msr_view *s) {
   size_t fastest = 0;
-  double most = -1;
   for (size_t i = 0; i < s->n; i++) {
-    const double speed = hypot(s->vx[i], s->vy[i]);
-    if (!isfinite(speed) || !isfinite(s->x[i]) || !isfinite(s->y[i])) return i;
-    if (speed > most) fastest = i, most = speed;
+    if (!isfinite(speed(s, i)) || !isfinite(s->x[i]) || !isfinite(s->y[i])) return i;
+    if (speed(s, i) > speed(s, fastest)) fastest = i;
   }
   return fastest;
 }
@@ -94,35 +89,37 @@ static void advise(const msr_plan_figures *f, char *text, size_t size) {
                 f->stable_step, 2 * (unsigned long long)f->substeps);
 }
 
-static msr_status refuse(const msr_state *state, double ratio, msr_error *err) {
-  const msr_view view = msr_state_view(state);
-  char mass[64], advice[160];
+static msr_status refuse(const msr_state *state, size_t mass, double ratio, msr_error *err) {
+  char name[64], advice[160];
   advise(&state->plan->figures, advice, sizeof advice);
-  msri_plan_mass_name(state->plan, culprit(&view), mass, sizeof mass);
+  msri_plan_mass_name(state->plan, mass, name, sizeof name);
   return msri_fail(err, MSR_EUNSTABLE,
                    "unstable at iteration %llu, t = %g s: %s has run away, with %.3g times the "
                    "energy that the scene had to give; %s",
-                   (unsigned long long)state->iteration, state->t, mass, ratio, advice);
+                   (unsigned long long)state->iteration, state->t, name, ratio, advice);
+}
+
+/* Adds what driving forces have done since the last look. */
+static msr_status add_drive(msr_state *state, msr_error *err) {
+  double work = 0;
+  const msr_status status = state->plan->driven ? follow_drive(state, &work, err) : MSR_OK;
+  state->guard.work += work;
+  return status;
 }
 
 msr_status msr_state_check(msr_state *state, msr_error *err) {
   msr_status status = msri_guard_begin(state, err);
+  if (status == MSR_OK) status = add_drive(state, err);
   if (status != MSR_OK) return status;
-  msri_guard *guard = &state->guard;
+  const msri_guard *guard = &state->guard;
   const msr_plan_figures *f = &state->plan->figures;
-  if (state->plan->driven) {
-    double work = 0;
-    status = follow_drive(state, &work, err);
-    if (status != MSR_OK) return status;
-    guard->work += work;
-  }
   const energies now = energies_of(state);
-  const msr_view view = msr_state_view(state);
-  const double visible = mean_mass(&view) * pow(f->omega * invisible, 2) / 2;
   const double fallen = msri_max(0, guard->potential - now.potential);
-  const double given = guard->energy + fallen + guard->work + visible;
-  const double ratio = now.moving / given;
-  const bool sound =
-      isfinite(now.moving) && isfinite(now.potential) && now.moving <= allowance(f) * given;
-  return sound ? MSR_OK : refuse(state, ratio, err);
+  const double given = guard->energy + fallen + guard->work;
+  const bool finite = isfinite(now.moving) && isfinite(now.potential);
+  if (finite && now.moving <= allowance(f) * given) return MSR_OK;
+  const msr_view view = msr_state_view(state);
+  const size_t mass = culprit(&view);
+  if (finite && speed(&view, mass) * f->h <= slow) return MSR_OK;
+  return refuse(state, mass, now.moving / given, err);
 }

@@ -93,23 +93,25 @@ void msr_renderer_free(msr_renderer *renderer) {
   free(renderer);
 }
 
-/* The pixels from..to-1 of `size` that a mass's square covers, its edge at `edge` in frame pixels;
- * false: none. */
-static bool cover(double edge, size_t scale, size_t size, size_t *from, size_t *to) {
-  const double first = floor(edge + 0.5), last = first + (double)scale;
+/* The pixels from..to-1 of `size` that a square of `scale` pixels from `first` on covers; false:
+ * none. */
+static bool cover(double first, size_t scale, size_t size, size_t *from, size_t *to) {
+  const double last = first + (double)scale;
   if (!(last > 0 && first < (double)size)) return false;
   *from = first > 0 ? (size_t)first : 0;
   *to = last < (double)size ? (size_t)last : size;
   return true;
 }
 
+/* As for supports, a pixel owns its left and lower edges. */
 static void draw_mass(msr_renderer *renderer, double x, double y, const unsigned char *rgb) {
   msr_picture *frame = renderer->frame;
   const double scale = (double)renderer->scale;
+  const double first_column = floor((x - 0.5) * scale + 0.5);
+  const double first_row = ceil((renderer->height - y - 0.5) * scale - 0.5);
   size_t left, right, top, bottom;
-  if (!cover((x - 0.5) * scale, renderer->scale, frame->width, &left, &right)) return;
-  if (!cover((renderer->height - y - 0.5) * scale, renderer->scale, frame->height, &top, &bottom))
-    return;
+  if (!cover(first_column, renderer->scale, frame->width, &left, &right)) return;
+  if (!cover(first_row, renderer->scale, frame->height, &top, &bottom)) return;
   for (size_t row = top; row < bottom; row++)
     for (size_t column = left; column < right; column++) {
       const size_t at = 3 * (row * frame->width + column);

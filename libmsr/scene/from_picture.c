@@ -74,20 +74,29 @@ msr_status msr_scene_from_picture(const char *name, const msr_picture *picture,
   return adopt(name, copy, conf, options, scene, err);
 }
 
+/* What a user should know about the files. */
+static msr_status note_oddities(msr_scene *scene, const char *picture_path, bool more,
+                                msr_error *err) {
+  msr_status status = MSR_OK;
+  if (more)
+    status = msri_notes_add(&scene->notes, err, "%s holds several images: the first is the scene",
+                            picture_path);
+  if (status == MSR_OK && scene->n_picture == 0)
+    status = msri_notes_add(&scene->notes, err, "%s has no mass: nothing will move", picture_path);
+  return status;
+}
+
 msr_status msr_scene_load(const char *picture_path, const char *conf_path,
                           const msr_scene_options *options, msr_scene **scene, msr_error *err) {
   msr_conf conf;
   msr_picture *picture;
+  msr_scene *made;
   bool more = false;
   msr_status status = msr_conf_read(conf_path, &conf, err);
   if (status == MSR_OK) status = msr_picture_read(picture_path, &picture, &more, err);
+  if (status == MSR_OK) status = adopt(picture_path, picture, &conf, options, &made, err);
   if (status != MSR_OK) return status;
-  msr_scene *made;
-  status = adopt(picture_path, picture, &conf, options, &made, err);
-  if (status != MSR_OK) return status;
-  if (more)
-    status = msri_notes_add(&made->notes, err, "%s holds several images: the first is the scene",
-                            picture_path);
+  status = note_oddities(made, picture_path, more, err);
   if (status == MSR_OK)
     *scene = made;
   else
