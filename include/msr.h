@@ -422,9 +422,9 @@ typedef struct msr_plan_figures {
   uint64_t iterations, images, substeps;
   double dt;          /* of an iteration [s] */
   double h;           /* of a step: dt / substeps [s] */
-  double stable_step; /* steps below this are stable in any state [s]; 0: none; may be INFINITY */
+  double stable_step; /* steps below this are stable at any stretch [s]; 0: none; may be INFINITY */
   double safe_step;   /* the library's own steps are no larger: 0.9 of it, 0.5 with contacts */
-  double omega;       /* bound of the angular frequencies, in any state [1/s] (Gershgorin) */
+  double omega;       /* bound of the angular frequencies, at any stretch [1/s] (Gershgorin) */
   double gamma;       /* bound of the rates of damping that limit the step [1/s] */
   size_t plan_bytes, state_bytes; /* of memory */
 } msr_plan_figures;
@@ -452,9 +452,9 @@ MSR_API void msr_state_copy(msr_state *to, const msr_state *from);
  * for the same bits. */
 MSR_API uint64_t msr_state_hash(const msr_state *state);
 
-/* Writes t, x, y, vx, vy and the counts to a file, and reads them back into a state of a plan
- * of as many masses: what follows has the same bits as if it had never been saved.
- * MSR_EIO, MSR_EINPUT. */
+/* Writes t, x, y, vx, vy, the iterations, contacts and frames so far to a file, and reads them back
+ * into a state of a plan of as many masses: what follows has the same bits as if it had never been
+ * saved. MSR_EIO, MSR_EINPUT. */
 MSR_API msr_status msr_state_save(const msr_state *state, const char *path, msr_error *err);
 MSR_API msr_status msr_state_load(msr_state *state, const char *path, msr_error *err);
 

@@ -9,6 +9,7 @@ typedef struct msri_guard {
   bool begun;
   double energy;    /* kinetic and spring energy at the start */
   double potential; /* of all other conservative forces at the start */
+  double fallen;    /* the most that it has been below that */
   double work;      /* bound of what driving forces have done since */
 } msri_guard;
 

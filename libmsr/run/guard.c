@@ -1,11 +1,12 @@
 /* guard.c - watches a state for numbers that can't be true.
  *
  * A sound run can't have more kinetic and spring energy than the scene had to give: what it had at
- * the start, plus what the other potentials (gravity, pushes) have lost, plus what driving forces
- * (wind) have done, at most sum |F| |dx| between two looks. Near the limit of stability, with
- * s = h omega / 2 near 1, the energy of the method itself swings: by 1 / (1 - s^2) with Verlet, by
- * (1 + s) / (1 - s) with symplectic Euler, at most 4 / (1 - s^2), which widens the bound (modified
- * energy of the harmonic oscillator: Hairer, Lubich & Wanner 2003, Acta Numerica 12, 399, 1.5). */
+ * the start, plus the most that the other potentials (gravity, pushes) lost, plus what driving
+ * forces (wind) have done, at most sum |F| |dx| between two looks. Near the limit of stability,
+ * with s = h omega / 2 near 1, the energy of the method itself swings: by 1 / (1 - s^2) with
+ * Verlet, by (1 + s) / (1 - s) with symplectic Euler, at most 4 / (1 - s^2), which widens the bound
+ * (modified energy of the harmonic oscillator: Hairer, Lubich & Wanner 2003, Acta Numerica 12,
+ * 399, 1.5). */
 #include "run/guard.h"
 
 #include "base/number.h"
@@ -53,7 +54,7 @@ msr_status msri_guard_begin(msr_state *state, msr_error *err) {
   const energies start = energies_of(state);
   double ignored = 0;
   const msr_status status = state->plan->driven ? follow_drive(state, &ignored, err) : MSR_OK;
-  state->guard = (msri_guard){status == MSR_OK, start.moving, start.potential, 0};
+  state->guard = (msri_guard){status == MSR_OK, start.moving, start.potential, 0, 0};
   return status;
 }
 
@@ -111,11 +112,11 @@ msr_status msr_state_check(msr_state *state, msr_error *err) {
   msr_status status = msri_guard_begin(state, err);
   if (status == MSR_OK) status = add_drive(state, err);
   if (status != MSR_OK) return status;
-  const msri_guard *guard = &state->guard;
+  msri_guard *guard = &state->guard;
   const msr_plan_figures *f = &state->plan->figures;
   const energies now = energies_of(state);
-  const double fallen = msri_max(0, guard->potential - now.potential);
-  const double given = guard->energy + fallen + guard->work;
+  guard->fallen = msri_max(guard->fallen, guard->potential - now.potential);
+  const double given = guard->energy + guard->fallen + guard->work;
   const bool finite = isfinite(now.moving) && isfinite(now.potential);
   if (finite && now.moving <= allowance(f) * given) return MSR_OK;
   const msr_view view = msr_state_view(state);
