@@ -1,7 +1,7 @@
 /* damping.c - damping along the springs: F_ij = z (v_ij . n) n, with n the spring's direction.
  *
  * Alone on one spring it is solved exactly: the axial speed of two masses decays as exp(-z h / mu),
- * mu = m_i m_j / (m_i + m_j). The flow does that spring after spring, or in the opposite order, so
+ * 1 / mu = 1 / m_i + 1 / m_j. The flow does that spring after spring, or in the opposite order, so
  * that a forward half step and a backward one make a symmetric step (order 2, stable for any z). */
 #include "forces/mesh.h"
 
@@ -28,57 +28,58 @@ static void describe(const void *params, const msr_view *s, char *text, size_t s
               ((const msr_damping *)params)->z);
 }
 
-/* Direction of a spring, (0, 0) if it has none. */
-static inline void direction(double dx, double dy, double *nx, double *ny) {
-  const double l = sqrt(dx * dx + dy * dy);
-  *nx = l > 0 ? dx / l : 0;
-  *ny = l > 0 ? dy / l : 0;
+/* (r . n) n for a spring along d: its part of r, (0, 0) if it has no direction. */
+static inline void along(double dx, double dy, double *rx, double *ry) {
+  const double l2 = dx * dx + dy * dy;
+  const double part = l2 > 0 ? (*rx * dx + *ry * dy) / l2 : 0;
+  *rx = part * dx;
+  *ry = part * dy;
+}
+
+static void add_spring(const msr_view *s, size_t i, size_t j, double z, double *fx, double *fy) {
+  double rx = s->vx[j] - s->vx[i], ry = s->vy[j] - s->vy[i];
+  along(s->x[j] - s->x[i], s->y[j] - s->y[i], &rx, &ry);
+  fx[i] += z * rx, fy[i] += z * ry;
+  fx[j] -= z * rx, fy[j] -= z * ry;
 }
 
 static msr_status add(const void *self, void *scratch, const msr_view *s, double *fx, double *fy) {
   (void)scratch;
   const double z = ((const msr_damping *)self)->z;
-  double nx, ny;
   for (size_t r = 0; r < s->springs->n_runs; r++) {
     const msr_run_of_springs *run = &s->springs->run[r];
-    for (size_t i = run->first; i < run->first + run->count; i++) {
-      const size_t j = i + (size_t)run->offset;
-      direction(s->x[j] - s->x[i], s->y[j] - s->y[i], &nx, &ny);
-      const double f = z * ((s->vx[j] - s->vx[i]) * nx + (s->vy[j] - s->vy[i]) * ny);
-      fx[i] += f * nx, fy[i] += f * ny;
-      fx[j] -= f * nx, fy[j] -= f * ny;
-    }
+    for (size_t i = run->first; i < run->first + run->count; i++)
+      add_spring(s, i, i + (size_t)run->offset, z, fx, fy);
   }
   for (size_t n = 0; n < s->springs->n_anchors; n++) {
     const msr_anchor *a = &s->springs->anchor[n];
-    direction(a->x - s->x[a->i], a->y - s->y[a->i], &nx, &ny);
-    const double f = z * (s->vx[a->i] * nx + s->vy[a->i] * ny);
-    fx[a->i] -= f * nx, fy[a->i] -= f * ny;
+    double rx = s->vx[a->i], ry = s->vy[a->i];
+    along(a->x - s->x[a->i], a->y - s->y[a->i], &rx, &ry);
+    fx[a->i] -= z * rx, fy[a->i] -= z * ry;
   }
   return MSR_OK;
 }
 
-/* What a flow of h needs to know of a spring's reduced mass, kept while it stays the same. */
+/* What a flow needs to know of a pair of masses, kept while they stay the same. */
 typedef struct decay {
-  double zh, mu, lost; /* lost: share of the axial momentum, 1 - exp(-z h / mu) */
+  double zh, mi, mj;
+  double gain_i, gain_j; /* share of the axial speed that each takes up */
 } decay;
 
-static inline double lost(decay *d, double mu) {
-  if (mu != d->mu) {
-    d->mu = mu;
-    d->lost = -expm1(-d->zh / mu);
-  }
-  return d->lost;
+/* An anchor is a mass without end: mj = INFINITY. */
+static inline void set_masses(decay *d, double mi, double mj) {
+  if (mi == d->mi && mj == d->mj) return;
+  const double mu = 1 / (1 / mi + 1 / mj), lost = -expm1(-d->zh / mu);
+  *d = (decay){d->zh, mi, mj, lost * mu / mi, lost * mu / mj};
 }
 
 static inline void damp_spring(const msr_view *s, size_t i, size_t j, decay *d, double *vx,
                                double *vy) {
-  double nx, ny;
-  direction(s->x[j] - s->x[i], s->y[j] - s->y[i], &nx, &ny);
-  const double mi = msr_view_mass(s, i), mj = msr_view_mass(s, j), mu = mi / (mi + mj) * mj;
-  const double p = lost(d, mu) * mu * ((vx[j] - vx[i]) * nx + (vy[j] - vy[i]) * ny);
-  vx[i] += p * nx / mi, vy[i] += p * ny / mi;
-  vx[j] -= p * nx / mj, vy[j] -= p * ny / mj;
+  double rx = vx[j] - vx[i], ry = vy[j] - vy[i];
+  along(s->x[j] - s->x[i], s->y[j] - s->y[i], &rx, &ry);
+  set_masses(d, msr_view_mass(s, i), msr_view_mass(s, j));
+  vx[i] += d->gain_i * rx, vy[i] += d->gain_i * ry;
+  vx[j] -= d->gain_j * rx, vy[j] -= d->gain_j * ry;
 }
 
 static void damp_run(const msr_view *s, const msr_run_of_springs *run, decay *d, bool backward,
@@ -90,17 +91,17 @@ static void damp_run(const msr_view *s, const msr_run_of_springs *run, decay *d,
 }
 
 static void damp_anchor(const msr_view *s, const msr_anchor *a, decay *d, double *vx, double *vy) {
-  double nx, ny;
-  direction(a->x - s->x[a->i], a->y - s->y[a->i], &nx, &ny);
-  const double v = lost(d, msr_view_mass(s, a->i)) * (vx[a->i] * nx + vy[a->i] * ny);
-  vx[a->i] -= v * nx, vy[a->i] -= v * ny;
+  double rx = vx[a->i], ry = vy[a->i];
+  along(a->x - s->x[a->i], a->y - s->y[a->i], &rx, &ry);
+  set_masses(d, msr_view_mass(s, a->i), INFINITY);
+  vx[a->i] -= d->gain_i * rx, vy[a->i] -= d->gain_i * ry;
 }
 
 static msr_status flow(const void *self, void *scratch, const msr_view *s, double h, bool backward,
                        double *vx, double *vy) {
   (void)scratch;
   const msr_springs *springs = s->springs;
-  decay d = {((const msr_damping *)self)->z * h, 0, 0};
+  decay d = {.zh = ((const msr_damping *)self)->z * h};
   for (size_t n = 0; backward && n < springs->n_anchors; n++)
     damp_anchor(s, &springs->anchor[springs->n_anchors - 1 - n], &d, vx, vy);
   for (size_t r = 0; r < springs->n_runs; r++)

@@ -1,0 +1,43 @@
+/* bits.c - the hashes of a scene with every kind of effect, by each integrator that is stable. */
+#include "msr.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static msr_error err;
+
+static void check(msr_status status) {
+  if (status == MSR_OK) return;
+  fprintf(stderr, "%s\n", err.message);
+  exit(EXIT_FAILURE);
+}
+
+static msr_scene *load(const char *picture, const char *conf) {
+  const msr_scene_options options = {.neighbours = 8, .attach = true, .closed_border = true};
+  const msr_wind wind = {.c = 0.01, .speed = 20, .gust = 10, .seed = 7};
+  msr_scene *scene;
+  check(msr_scene_load(picture, conf, &options, &scene, &err));
+  check(msr_scene_add_force(scene, &msr_force_damping, &(msr_damping){0.3}, &err));
+  check(msr_scene_add_force(scene, &msr_force_wind, &wind, &err));
+  return scene;
+}
+
+static void print_hash(const msr_scene *scene, const msr_integrator *integrator) {
+  msr_plan *plan;
+  msr_state *state;
+  check(msr_plan_create(scene, &(msr_plan_options){.integrator = integrator}, &plan, &err));
+  check(msr_state_create(plan, &state, &err));
+  check(msr_state_step(state, 60, &err));
+  printf("%s %016" PRIx64 "\n", integrator->name, msr_state_hash(state));
+  msr_state_free(state);
+  msr_plan_free(plan);
+}
+
+int main(int argc, char **argv) {
+  if (argc != 3) return EXIT_FAILURE;
+  msr_scene *scene = load(argv[1], argv[2]);
+  for (const msr_integrator *const *i = msr_integrators; *i; i++)
+    if ((*i)->stability > 0) print_hash(scene, *i);
+  msr_scene_free(scene);
+}
