@@ -167,9 +167,9 @@ check-san: | $(FIRST)
 check-valgrind: $(TESTS) $(LOCALE)
 	@RUNNER='valgrind -q --leak-check=full --error-exitcode=99' $(RUN_TESTS) $(TESTS)
 
-# $(call tidy,FILES,CHECKS)
-tidy = printf '%s\n' $(1) | xargs -P 2 -I {} \
-       clang-tidy --quiet --checks='$(2)' {} -- $(LANGUAGE) -Ilibmsr $(GSL_CFLAGS)
+# $(call tidy,FILES,CHECKS); what it finds is on stdout, how much it left out on stderr.
+tidy = printf '%s\n' $(1) | xargs -P 2 -I {} sh -c \
+       "clang-tidy --quiet --checks='$(2)' {} -- $(LANGUAGE) -Ilibmsr $(GSL_CFLAGS) 2>/dev/null"
 check-tidy: | $(FIRST)
 	$(call tidy,$(LIB_SRC))
 	$(call tidy,$(CLI_SRC) $(EX_SRC),-concurrency-mt-unsafe)

@@ -93,7 +93,7 @@ static void damp_run(const msr_view *s, const msr_run_of_springs *run, decay *d,
 static void damp_anchor(const msr_view *s, const msr_anchor *a, decay *d, double *vx, double *vy) {
   double rx = vx[a->i], ry = vy[a->i];
   along(a->x - s->x[a->i], a->y - s->y[a->i], &rx, &ry);
-  set_masses(d, msr_view_mass(s, a->i), INFINITY);
+  set_masses(d, msr_view_mass(s, a->i), (double)INFINITY);
   vx[a->i] -= d->gain_i * rx, vy[a->i] -= d->gain_i * ry;
 }
 
