@@ -39,7 +39,9 @@ LINK        = $(CC) $(CFLAGS) $(SANITIZE) $(LDFLAGS)
 # ---- Files ---------------------------------------------------------------------------------------
 
 VERSION  := $(shell sed -n 's/^.define MSR_VERSION "\(.*\)"/\1/p' include/msr.h)
-MAJOR    := $(firstword $(subst ., ,$(VERSION)))
+# Before 1.0 a minor version may change the interface.
+NUMBERS  := $(subst ., ,$(VERSION))
+MAJOR    := $(word 1,$(NUMBERS))$(if $(filter 0,$(word 1,$(NUMBERS))),.$(word 2,$(NUMBERS)))
 LIB_SRC  := $(wildcard libmsr/*/*.c)
 CLI_SRC  := $(wildcard cli/*.c)
 TEST_SRC := $(wildcard tests/test_*.c)

@@ -48,7 +48,7 @@ static void print_step(const settings *s, const msr_plan_figures *f) {
   if (isinf(f->stable_step)) {
     puts("any");
   } else if (f->stable_step > 0) {
-    printf("%.4g s, in any state; DT is %.3g %% of it; safe steps are up to %.4g s\n",
+    printf("%.4g s, at any stretch; DT is %.3g %% of it; safe steps are up to %.4g s\n",
            f->stable_step, 100 * f->dt / f->stable_step, f->safe_step);
   } else {
     puts("none: this integrator heats whatever the step");

@@ -65,7 +65,7 @@ static msr_status check_frames(const settings *s, const msr_plan *plan, msr_erro
 
 static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **plan,
                           msr_error *err) {
-  const msr_plan_options options = {.integrator = s->integrator, .substeps = s->substeps};
+  const msr_plan_options options = {.integrator = s->integrator, .substeps = (uint64_t)s->substeps};
   const char *text;
   msr_status status = msr_plan_create(scene, &options, plan, err);
   if (status != MSR_OK) return status;

@@ -137,7 +137,7 @@ static bool read_stripe(const kind *k, const char *text, void *field) {
 
 static const named_value degrees[] = {{"4", 4}, {"8", 8}, {NULL, 0}};
 static const named_value borders[] = {{"open", 0}, {"closed", 1}, {NULL, 0}};
-static const named_value steps[] = {{"auto", 0}, {"off", MSR_SUBSTEPS_OFF}, {NULL, 0}};
+static const named_value steps[] = {{"auto", 0}, {"off", 1}, {NULL, 0}};
 
 const kind a_flag = {.read = read_flag};
 const kind a_path = {.wants = "the name of a file", .read = read_path};

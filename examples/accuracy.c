@@ -30,7 +30,7 @@ static msr_scene *chain(void) {
 }
 
 /* Simulates a second; where the masses are then goes to x [N], how long it took is returned [s]. */
-static double simulate(const msr_scene *scene, const msr_integrator *method, int64_t substeps,
+static double simulate(const msr_scene *scene, const msr_integrator *method, uint64_t substeps,
                        double *x) {
   msr_plan *plan;
   msr_state *state;
@@ -50,14 +50,14 @@ int main(void) {
   msr_scene *scene = chain();
   simulate(scene, &msr_integrator_rk4, 128, reference);
   for (const msr_integrator *const *method = msr_integrators; *method; method++)
-    for (int substeps = 2; (*method)->stability > 0 && substeps <= 32; substeps *= 4) {
+    for (unsigned substeps = 2; (*method)->stability > 0 && substeps <= 32; substeps *= 4) {
       const double seconds = simulate(scene, *method, substeps, x);
       double error = 0;
       for (size_t i = 0; i < N; i++) {
         if (x[i] - reference[i] > error) error = x[i] - reference[i];
         if (reference[i] - x[i] > error) error = reference[i] - x[i];
       }
-      printf("%-17s%2d substeps: error %.0e px in %5.2f ms\n", (*method)->name, substeps, error,
+      printf("%-17s%2u substeps: error %.0e px in %5.2f ms\n", (*method)->name, substeps, error,
              1000 * seconds);
     }
   msr_scene_free(scene);

@@ -6,12 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 
-static msr_status drift(const msr_system *s, double h, double *q, double *v) {
-  if (s->drift) return s->drift(s->self, h, v, q, v);
-  for (size_t i = 0; i < s->n; i++) q[i] += h * v[i];
-  return MSR_OK;
-}
-
 /* Drifts and kicks in turn; both rows read the same backwards, hence the method is reversible. */
 static msr_status step(const msr_integrator *self, const msr_system *s,
                        const msr_interval *interval, double *q, double *v, double *a) {
@@ -20,13 +14,13 @@ static msr_status step(const msr_integrator *self, const msr_system *s,
   double share = 0;
   (void)self;
   for (int k = 0; k < 4; k++) {
-    msr_status status = drift(s, drifts[k] * interval->h, q, v);
+    msr_status status = msr_system_drift(s, drifts[k] * interval->h, v, q, v);
     const double t = msr_interval_time(interval, share += drifts[k]);
     if (status == MSR_OK) status = s->acceleration(s->self, t, q, v, a);
     if (status != MSR_OK) return status;
     for (size_t i = 0; i < s->n; i++) v[i] += kicks[k] * interval->h * a[i];
   }
-  return drift(s, drifts[4] * interval->h, q, v);
+  return msr_system_drift(s, drifts[4] * interval->h, v, q, v);
 }
 
 static const msr_integrator pefrl = {.name = "pefrl",
@@ -36,6 +30,7 @@ static const msr_integrator pefrl = {.name = "pefrl",
                                      .reversible = true,
                                      .evaluations = 4,
                                      .stability = 2.97,
+                                     .damping_stability = 1,
                                      .vectors = 1,
                                      .step = step};
 

@@ -11,8 +11,10 @@
  * the top) of a picture of H rows has its centre at (c + 0.5, H - r - 0.5).
  *
  * Errors: what can fail returns a msr_status and fills `err` (may be NULL) with a sentence for the
- * user; on failure nothing is created and outputs are untouched. The library never prints, never
- * exits and installs no handler. Who creates frees; freeing NULL does nothing.
+ * user; on failure nothing is created and outputs are untouched, but for a state whose step failed,
+ * which is where that step left it. What allocates may also return MSR_ENOMEM, whether or not it is
+ * listed. The library never prints, never exits and installs no handler. Who creates frees; freeing
+ * NULL does nothing.
  *
  * Threads: there is no global state. A scene, a state, a renderer or a sink belongs to one thread
  * at a time; a plan is immutable and may be shared by any number of states in any number of
@@ -90,7 +92,8 @@ MSR_API msr_status msr_picture_read(const char *path, msr_picture **picture, boo
 MSR_API msr_status msr_picture_parse(const char *name, const void *bytes, size_t size,
                                      msr_picture **picture, bool *more, msr_error *err);
 
-/* Writes a P6 file, maxval 255; it appears whole or not at all. MSR_EIO. */
+/* Writes a P6 file, maxval 255. As all files that the library writes it appears whole or not at
+ * all; pipes, devices and "-", standard output, are written directly. MSR_EIO. */
 MSR_API msr_status msr_picture_write(const msr_picture *picture, const char *path, msr_error *err);
 
 MSR_API void msr_picture_free(msr_picture *picture);
@@ -99,7 +102,7 @@ MSR_API void msr_picture_free(msr_picture *picture);
 typedef struct msr_conf {
   double dt;           /* DT: duration of an iteration [s], > 0 */
   double gravity;      /* GRAVITE: acceleration along -y [px/s^2], any sign */
-  double mass;         /* MASSE: of each red pixel [kg], > 0 */
+  double mass;         /* MASSE: of each coloured pixel [kg], > 0 */
   double stiffness;    /* TENSION_RESSORT: k of each spring [kg/s^2], >= 0 */
   uint64_t iterations; /* NB_ITERATIONS: of DT each, <= 2^53 */
   uint64_t images;     /* NB_IMAGES: frames, 1 .. 10^9, at most one per iteration (1 if none) */
@@ -115,11 +118,10 @@ MSR_API msr_status msr_conf_parse(const char *name, const char *text, size_t siz
 
 /* ---- What forces see ------------------------------------------------------------------------- */
 
-/* Springs first+s -- first+s+offset, s = 0 .. count-1: a row of a lattice is one run.
+/* Springs first+s -- first+s+offset, s = 0 .. count-1, offset > 0: a row of a lattice is one run.
  * Spring s has stiffness k[s*stride] [kg/s^2] and rest length L[s*stride] [px]. */
 typedef struct msr_run_of_springs {
-  size_t first, count;
-  ptrdiff_t offset;
+  size_t first, count, offset;
   const double *k, *L;
   size_t stride; /* 0: one k and one L for the whole run; 1: k[count], L[count] */
 } msr_run_of_springs;
@@ -130,19 +132,19 @@ typedef struct msr_anchor {
   double x, y, k, L;
 } msr_anchor;
 
-/* All springs of a system. */
+/* All springs of a scene. */
 typedef struct msr_springs {
   size_t n, n_runs, n_anchors;   /* n: springs in all runs */
   const msr_run_of_springs *run; /* [n_runs] */
   const msr_anchor *anchor;      /* [n_anchors] */
 } msr_springs;
 
-/* A system of n masses at time t, for reading. */
+/* The n masses of a scene at time t, for reading. */
 typedef struct msr_view {
   size_t n;
   double t;              /* [s] */
   const double *x, *y;   /* [n] [px] */
-  const double *vx, *vy; /* [n] [px/s]; NULL in add() of a force that doesn't use velocity */
+  const double *vx, *vy; /* [n] [px/s]; may be NULL in add() of a force that doesn't use velocity */
   const double *m;       /* mass i is m[i*m_stride] [kg] */
   size_t m_stride;       /* 0: all masses are equal; 1: m[n] */
   const msr_springs *springs;
@@ -153,8 +155,10 @@ static inline double msr_view_mass(const msr_view *s, size_t i) { return s->m[i 
 
 /* ---- Forces ---------------------------------------------------------------------------------- */
 
-/* A kind of force. Only name, summary and add are required; NULL, false and 0 do for the rest.
- * A callback's status other than MSR_OK ends what called it and comes back unchanged.
+/* A kind of force. Only name, summary and add are required; NULL, false and 0 do for the rest, but
+ * conservative goes with energy, both or neither.
+ * A callback's status other than MSR_OK ends what called it and comes back unchanged; a callback
+ * that is given err fills it.
  * Each may be called from several threads at once, with different scratch. */
 typedef struct msr_force {
   const char *name;    /* one word */
@@ -187,12 +191,12 @@ typedef struct msr_force {
                      double *vx, double *vy);
   /* Potential energy [kg px^2/s^2]. */
   double (*energy)(const void *self, const msr_view *s);
-  /* Upper bounds in any state, for the stable step: of the largest eigenvalue of -dF/dx / m
+  /* Upper bounds at any stretch, for the stable step: of the largest eigenvalue of -dF/dx / m
    * [1/s^2], at v = 0, and of -dF/dv / m [1/s]; both are 0 on entry. */
   msr_status (*rates)(const void *self, const msr_view *s, double *omega2, double *gamma);
 } msr_force;
 
-/* F_ij = k (|x_ij| - L) x_ij / |x_ij|, 0 at |x_ij| = 0. Every scene has it; no params. */
+/* F_ij = k (|x_ij| - L) x_ij / |x_ij|, 0 at |x_ij| = 0. Every scene has it: it can't be added. */
 MSR_API extern const msr_force msr_force_springs;
 
 /* F = -m g along y; U = m g y. */
@@ -217,9 +221,9 @@ MSR_API extern const msr_force msr_force_damping;
  * w = (speed, 0) plus an Ornstein-Uhlenbeck process in x and one in y of standard deviation
  * `gust` and correlation time `gust_time` (Uhlenbeck & Ornstein 1930), drawn from the seed
  * on a grid of gust_time / 16 and interpolated by a spline of degree 7: a function of (seed, t)
- * alone, the same for every integrator and step. The variance is gust^2; the covariance beyond a
- * quarter of gust_time is 3 to 5 % above gust^2 exp(-lag / gust_time). gust = 0 blows steadily and
- * draws nothing. */
+ * alone, the same for every integrator and step. The variance is gust^2; the covariance at lags
+ * above a fifth of gust_time is 5.7 % above gust^2 exp(-lag / gust_time). gust = 0 blows steadily
+ * and draws nothing. */
 typedef struct msr_wind {
   double c;         /* drag of the air [kg/s], > 0; 0: the mean mass over 1 s */
   double speed;     /* mean, along x [px/s], any sign */
@@ -249,12 +253,20 @@ typedef struct msr_system {
   /* a[n] at (t, q, v). v is NULL only if damp is given: then a leaves out what depends on v. */
   msr_status (*acceleration)(void *self, double t, const double *q, const double *v, double *a);
   /* Advances v by h under what depends on v alone, q and t held; backward: in adjoint order.
-   * NULL: a doesn't depend on v. */
+   * NULL: what depends on v, if anything does, is in a, and methods that split lose their order. */
   msr_status (*damp)(void *self, double t, double h, bool backward, const double *q, double *v);
   /* q += h u, stopped by what is in the way, which reflects v; u may be v.
-   * NULL: nothing is in the way. */
+   * NULL: nothing is in the way. Integrators call msr_system_drift. */
   msr_status (*drift)(void *self, double h, const double *u, double *q, double *v);
 } msr_system;
+
+/* q += h u, past what is in the way if there is anything. What drift returns. */
+static inline msr_status msr_system_drift(const msr_system *system, double h, const double *u,
+                                          double *q, double *v) {
+  if (system->drift) return system->drift(system->self, h, u, q, v);
+  for (size_t i = 0; i < system->n; i++) q[i] += h * u[i];
+  return MSR_OK;
+}
 
 /* One step in time: from t to end; h is their difference before rounding. */
 typedef struct msr_interval {
@@ -263,7 +275,7 @@ typedef struct msr_interval {
 
 /* The time at a share c of an interval, for stages; at 1 exactly its end, where the next begins. */
 static inline double msr_interval_time(const msr_interval *interval, double c) {
-  return c >= 1 ? interval->end : interval->t + c * interval->h;
+  return c == 1 ? interval->end : interval->t + c * interval->h;
 }
 
 /* A method. Its declarations are what tests try to refute. */
@@ -273,11 +285,11 @@ typedef struct msr_integrator {
   const char *reference;    /* author, year, place; NULL: none */
   int order;                /* error ~ h^order at a fixed time */
   bool symplectic;          /* keeps phase-space area, where a is a gradient and v isn't used */
-  bool reversible;          /* flipping v retraces the path, likewise */
+  bool reversible;          /* flipping v retraces the path, likewise, where no support is met */
   bool splits;              /* advances what depends on v by damp(), not through a */
   double evaluations;       /* of a, per step */
   double stability;         /* largest stable h*omega for q'' = -omega^2 q; 0: none is */
-  double damping_stability; /* largest stable h*gamma for v' = -gamma v taken through a */
+  double damping_stability; /* largest stable h*gamma for v' = -gamma v through a; 0: none is */
   size_t vectors;           /* of n doubles of workspace */
   /* Makes the workspace fit (t, q, v): called before the first step and whenever they have been
    * changed from outside. NULL: no need. */
@@ -326,7 +338,7 @@ MSR_API msr_status msr_scene_from_picture(const char *name, const msr_picture *p
                                           const msr_conf *conf, const msr_scene_options *options,
                                           msr_scene **scene, msr_error *err);
 
-/* The same from two files, `.ppm` and `.conf`. */
+/* The same from two files, `.ppm` and `.conf`. MSR_EIO if one can't be read, and as above. */
 MSR_API msr_status msr_scene_load(const char *picture_path, const char *conf_path,
                                   const msr_scene_options *options, msr_scene **scene,
                                   msr_error *err);
@@ -336,7 +348,7 @@ MSR_API void msr_scene_free(msr_scene *scene);
 /* The i-th thing that a user should know about the scene, one line, or NULL past the last. */
 MSR_API const char *msr_scene_warning(const msr_scene *scene, size_t i);
 
-/* Sets DT, the number of iterations and of images; the rest of conf isn't looked at. MSR_EINPUT. */
+/* Sets DT [s], the number of iterations and of images, in the ranges of msr_conf. MSR_EINPUT. */
 MSR_API msr_status msr_scene_set_times(msr_scene *scene, double dt, uint64_t iterations,
                                        uint64_t images, msr_error *err);
 
@@ -353,7 +365,8 @@ typedef struct msr_mass {
 } msr_mass;
 
 /* Adds a mass after all others; its number goes to `index` (may be NULL).
- * MSR_EUSAGE if a value isn't finite, m <= 0 or it is inside a support; MSR_ENOMEM. */
+ * MSR_EUSAGE if a value isn't finite, m <= 0 or it is inside a support (beyond a closed border,
+ * too); MSR_ENOMEM. */
 MSR_API msr_status msr_scene_add_mass(msr_scene *scene, const msr_mass *mass, size_t *index,
                                       msr_error *err);
 
@@ -383,16 +396,14 @@ MSR_API msr_status msr_scene_mass_at(const msr_scene *scene, size_t column, size
 
 typedef struct msr_plan msr_plan;
 
-enum { MSR_SUBSTEPS_OFF = -1 };
-
 typedef struct msr_plan_options {
   const msr_integrator *integrator; /* NULL: Verlet */
-  int64_t substeps; /* steps per iteration; 0: as many as stability needs; MSR_SUBSTEPS_OFF: one */
+  uint64_t substeps; /* steps per iteration; 0: as many as keep below the safe step */
 } msr_plan_options;
 
-/* Compiles the scene, which may be freed after. `options` may be NULL.
- * MSR_EUSAGE, MSR_EINPUT if no number of substeps is enough, MSR_ENOMEM, or what force->prepare
- * returns. */
+/* Compiles the scene, which may be freed after; the integrator must outlive the plan. `options` may
+ * be NULL. MSR_EUSAGE if the integrator lacks name, summary or step; MSR_EINPUT if no number of
+ * substeps is enough; MSR_ENOMEM; or what force->prepare or force->rates returns. */
 MSR_API msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *options,
                                    msr_plan **plan, msr_error *err);
 
@@ -453,8 +464,8 @@ MSR_API void msr_state_copy(msr_state *to, const msr_state *from);
 MSR_API uint64_t msr_state_hash(const msr_state *state);
 
 /* Writes t, x, y, vx, vy, the iterations, contacts and frames so far to a file, and reads them back
- * into a state of a plan of as many masses: what follows has the same bits as if it had never been
- * saved. MSR_EIO, MSR_EINPUT. */
+ * into a state of a plan with the same masses, DT and substeps: what follows has the same bits as
+ * if it had never been saved. MSR_EIO, MSR_EINPUT. */
 MSR_API msr_status msr_state_save(const msr_state *state, const char *path, msr_error *err);
 MSR_API msr_status msr_state_load(msr_state *state, const char *path, msr_error *err);
 
@@ -474,8 +485,9 @@ MSR_API uint64_t msr_state_iteration(const msr_state *state);
  * names the mass, the time and a step that is stable. Or what a force returns. */
 MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err);
 
-/* The guard: MSR_EUNSTABLE if a number isn't finite or there is far more kinetic and spring energy
- * than the scene had to give: at the start, by what gravity and pushes lost, by what wind did. */
+/* The guard: what a driving force returns, or MSR_EUNSTABLE if a number isn't finite or there is
+ * far more kinetic and spring energy than the scene had to give: at the start, by what gravity and
+ * pushes lost, by what wind did. */
 MSR_API msr_status msr_state_check(msr_state *state, msr_error *err);
 
 /* Total force on each mass, fx, fy [masses] [kg px/s^2], contacts apart. What a force returns. */
@@ -490,7 +502,7 @@ typedef struct msr_energy {
 } msr_energy;
 MSR_API msr_energy msr_state_energy(const msr_state *state);
 
-/* Times that the code of effect i (of msr_plan_effects) was called, on all masses at once. */
+/* Times that effect i (of msr_plan_effects) was called to step the state, on all masses at once. */
 MSR_API uint64_t msr_state_calls(const msr_state *state, size_t effect);
 
 /* Collisions of masses with supports so far. */
@@ -540,8 +552,9 @@ MSR_API msr_status msr_frames_open(const msr_plan *plan, const char *dir, const 
 MSR_API msr_status msr_stats_open(const msr_plan *plan, const char *path, msr_sink *sink,
                                   msr_error *err);
 
-/* NumPy array, float64 [frames, masses, 4]: x, y, vx, vy; it appears when the sink is closed.
- * MSR_EIO, MSR_ENOMEM. */
+/* NumPy array, float64 [frames, masses, 4]: x, y, vx, vy; it appears when the sink is closed, with
+ * as many frames as there were (on a pipe the first line tells of all that were planned). MSR_EIO,
+ * MSR_ENOMEM. */
 MSR_API msr_status msr_trajectory_open(const msr_plan *plan, const char *path, msr_sink *sink,
                                        msr_error *err);
 

@@ -80,7 +80,7 @@ typedef struct world {
 
 /* Frees the scene. */
 static inline world open_world(msr_scene *scene, const msr_integrator *integrator,
-                               int64_t substeps) {
+                               uint64_t substeps) {
   world w;
   must(msr_plan_create(scene, &(msr_plan_options){integrator, substeps}, &w.plan, &why));
   must(msr_state_create(w.plan, &w.state, &why));

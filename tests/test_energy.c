@@ -25,7 +25,7 @@ static void set_going(world *w) {
 }
 
 static world going(const msr_integrator *integrator, double dt) {
-  world w = open_world(free_lattice(dt), integrator, MSR_SUBSTEPS_OFF);
+  world w = open_world(free_lattice(dt), integrator, 1);
   set_going(&w);
   return w;
 }
@@ -130,7 +130,7 @@ static void damping_keeps_momentum(void **state) {
   (void)state;
   msr_scene *scene = free_lattice(0.01);
   must(msr_scene_add_force(scene, &msr_force_damping, &(msr_damping){0.5}, &why));
-  world w = open_world(scene, NULL, MSR_SUBSTEPS_OFF);
+  world w = open_world(scene, NULL, 1);
   set_going(&w);
   const momenta before = momenta_of(w.state);
   const double e0 = total(&w), rounding = 4 * 200 * DBL_EPSILON * MASSES * mass * 10;
@@ -150,7 +150,7 @@ static double work_error(const msr_force *force, double dt, double *work) {
   msr_scene *scene = free_lattice(dt);
   must(msr_scene_add_force(scene, &msr_force_gravity, &(msr_gravity){9.8}, &why));
   must(msr_scene_add_force(scene, force, trial_params(force), &why));
-  world w = open_world(scene, NULL, MSR_SUBSTEPS_OFF);
+  world w = open_world(scene, NULL, 1);
   set_going(&w);
   const msr_view start = msr_state_view(w.state);
   actor a = prepare(force, trial_params(force), &start);
@@ -255,7 +255,7 @@ static void a_push_gives_its_impulse(void **state) {
   (void)state;
   msr_scene *scene = free_lattice(0.01);
   must(msr_scene_add_force(scene, &msr_force_push, &(msr_push){4, 3, -2}, &why));
-  world w = open_world(scene, NULL, MSR_SUBSTEPS_OFF);
+  world w = open_world(scene, NULL, 1);
   advance(&w, 100);
   const msr_energy e = msr_state_energy(w.state);
   const double rounding = 4 * 100 * DBL_EPSILON * MASSES * mass * 10;
@@ -296,7 +296,7 @@ static const char *const yard[] = {
 /* Largest gain and loss of the total energy in 5 s, at the assignment's stiffness and mass. */
 static void bounce_block(double dt, double *gain, double *loss) {
   const msr_conf conf = {dt, 9.8, 0.1, 1500, 1, 1};
-  world w = open_world(scene_of(draw(LENGTH(yard), yard), &conf, NULL), NULL, MSR_SUBSTEPS_OFF);
+  world w = open_world(scene_of(draw(LENGTH(yard), yard), &conf, NULL), NULL, 1);
   const double e0 = total(&w);
   *gain = *loss = 0;
   for (double t = 0; t < 5; t += dt) {

@@ -21,7 +21,7 @@ static void a_pair_swings_with_its_period(void **state) {
   add_mass(scene, 0, 0, 0, 0, m);
   add_mass(scene, 0, 1.2 * L, 0, 0, m);
   must(msr_scene_add_spring(scene, 0, 1, k, L, &why));
-  world w = open_world(scene, NULL, MSR_SUBSTEPS_OFF);
+  world w = open_world(scene, NULL, 1);
   advance(&w, 3900); /* 9.75 periods: at the rest length, as fast as it gets */
   assert_true(fabs(y_of(&w, 1) - y_of(&w, 0) - L) < 0.2 * L * phase);
   advance(&w, 100);
@@ -46,7 +46,7 @@ static world ring(size_t n, double h, double *omega) {
   }
   for (size_t i = 0; i < (n == 2 ? 1 : n); i++)
     must(msr_scene_add_spring(scene, i, (i + 1) % n, k, L, &why));
-  return open_world(scene, NULL, MSR_SUBSTEPS_OFF);
+  return open_world(scene, NULL, 1);
 }
 
 /* Largest change of the radius in 3 s. */
@@ -83,7 +83,7 @@ static void check_mode(size_t N, size_t j) {
     add_mass(scene, 2 * (double)i + shape[i], 5, 0, 0, m);
     if (i > 0) must(msr_scene_add_spring(scene, i - 1, i, k, 2, &why));
   }
-  world w = open_world(scene, NULL, MSR_SUBSTEPS_OFF);
+  world w = open_world(scene, NULL, 1);
   const double omega = 2 * sqrt(k / m) * sin((double)j * pi / (2 * (double)N));
   const double turn = 2 * asin(omega * h / 2);
   for (int n = 1; n <= 300; n++) {
@@ -138,7 +138,7 @@ static void an_anchored_mass_goes_round_its_ellipse(void **state) {
   msr_scene *scene = empty_scene(period / 1000);
   add_mass(scene, 4, 1, 0, 3, m);
   must(msr_scene_add_anchor(scene, &(msr_anchor){0, 1, 1, k, 0}, &why));
-  world w = open_world(scene, NULL, MSR_SUBSTEPS_OFF);
+  world w = open_world(scene, NULL, 1);
   advance(&w, 250);
   assert_true(fabs(x_of(&w, 0) - 1) < 3 * phase);
   assert_true(fabs(y_of(&w, 0) - 1 - 3 * sqrt(m / k)) < 4e-6); /* (omega h)^2 / 8 of it */
@@ -155,7 +155,7 @@ static void a_fall_is_exact(void **state) {
   msr_scene *scene = empty_scene(0.01);
   add_mass(scene, 2, 50, 1.5, 4, 0.3);
   must(msr_scene_add_force(scene, &msr_force_gravity, &(msr_gravity){9.8}, &why));
-  world w = open_world(scene, NULL, MSR_SUBSTEPS_OFF);
+  world w = open_world(scene, NULL, 1);
   for (int n = 1; n <= 300; n++) {
     advance(&w, 1);
     const double t = 0.01 * n, rounding = 300 * DBL_EPSILON * 50;
@@ -227,7 +227,7 @@ static void drag_alone_is_exact(void **state) {
   add_mass(scene, 0, 0, 4, -3, 0.5);
   add_mass(scene, 9, 0, 1, 2, 2);
   must(msr_scene_add_force(scene, &msr_force_drag, &(msr_drag){0.8}, &why));
-  world w = open_world(scene, NULL, MSR_SUBSTEPS_OFF);
+  world w = open_world(scene, NULL, 1);
   advance(&w, 10);
   const msr_view s = msr_state_view(w.state);
   assert_true(fabs(s.vx[0] - 4 * exp(-0.8 * 7 / 0.5)) < 40 * DBL_EPSILON);

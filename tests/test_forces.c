@@ -235,7 +235,7 @@ static double sum_of_sizes(const msr_view *s, double z) {
   for (size_t r = 0; r < s->springs->n_runs; r++) {
     const msr_run_of_springs *run = &s->springs->run[r];
     for (size_t n = 0; n < run->count; n++) {
-      const size_t i = run->first + n, j = i + (size_t)run->offset;
+      const size_t i = run->first + n, j = i + run->offset;
       const double l = hypot(s->x[j] - s->x[i], s->y[j] - s->y[i]);
       sum += run->k[n * run->stride] * (l + run->L[n * run->stride]);
       sum += z * hypot(s->vx[j] - s->vx[i], s->vy[j] - s->vy[i]);
@@ -388,12 +388,8 @@ static links links_of(const msr_springs *springs) {
   for (size_t r = 0; r < springs->n_runs; r++) {
     const msr_run_of_springs *run = &springs->run[r];
     for (size_t s = 0; s < run->count; s++)
-      all.link[all.n++] = (link){run->first + s,
-                                 run->first + s + (size_t)run->offset,
-                                 0,
-                                 0,
-                                 run->k[s * run->stride],
-                                 run->L[s * run->stride]};
+      all.link[all.n++] = (link){run->first + s,          run->first + s + run->offset, 0, 0,
+                                 run->k[s * run->stride], run->L[s * run->stride]};
   }
   assert_int_equal(all.n, springs->n);
   for (size_t a = 0; a < springs->n_anchors; a++) {

@@ -191,7 +191,7 @@ static void deform(world *w) {
 }
 
 static world deformed(const struct medium *m, const msr_integrator *integrator, double dt,
-                      int64_t substeps) {
+                      uint64_t substeps) {
   msr_scene *scene = lattice(WIDTH, HEIGHT, 8, &(msr_conf){dt, 0, 0.5, 30, 1, 1});
   for (size_t f = 0; f < MOST_FORCES && m->force[f]; f++)
     must(msr_scene_add_force(scene, m->force[f], trial_params(m->force[f]), &why));
@@ -339,7 +339,7 @@ static void check_plan_limit(const msr_integrator *integrator) {
   msr_scene *scene = empty_scene(0.01);
   for (int i = 0; i < 2; i++) add_mass(scene, i, 0, 0, 0, 0.5);
   must(msr_scene_add_spring(scene, 0, 1, 400, 1, &why));
-  world w = open_world(scene, integrator, MSR_SUBSTEPS_OFF);
+  world w = open_world(scene, integrator, 1);
   const msr_plan_figures f = msr_plan_describe(w.plan);
   assert_true(fabs(f.omega - 40) < 40 * 4 * DBL_EPSILON);
   assert_true(fabs(f.stable_step - integrator->stability / 40) <= 4 * DBL_EPSILON);
@@ -361,7 +361,7 @@ static world swinging(const msr_integrator *integrator, double dt, double phase,
   must(msr_scene_add_spring(scene, 0, 1, k, 1, &why));
   const msr_drag c = {rate * omega * m}; /* all that a damping holds, too */
   if (rate > 0) must(msr_scene_add_force(scene, brake, &c, &why));
-  return open_world(scene, integrator, MSR_SUBSTEPS_OFF);
+  return open_world(scene, integrator, 1);
 }
 
 /* At the library's own largest step, where the bound of frequencies is sharp, nothing runs away and
@@ -435,7 +435,7 @@ static void check_plain_return(const msr_integrator *integrator) {
 static void check_scene_return(const msr_integrator *integrator) {
   const uint64_t steps = 100;
   double start[4 * MASSES], z[4 * MASSES];
-  world w = deformed(&media[1], integrator, 0.004, MSR_SUBSTEPS_OFF);
+  world w = deformed(&media[1], integrator, 0.004, 1);
   read_world(&w, start);
   for (int way = 0; way < 2; way++) {
     advance(&w, steps);
@@ -513,7 +513,7 @@ static void check_mesh_area(const msr_integrator *integrator) {
   const double d = 1e-3, at[] = {-2, -1, 1, 2}, weight[] = {1.0 / 12, -2.0 / 3, 2.0 / 3, -1.0 / 12};
   msr_scene *scene = random_mesh(&triangle, NULL);
   must(msr_scene_set_times(scene, 0.05, 1, 1, &why));
-  world w = open_world(scene, integrator, MSR_SUBSTEPS_OFF);
+  world w = open_world(scene, integrator, 1);
   const msr_view s = msr_state_view(w.state);
   for (size_t i = 0; i < DEGREES; i++) m[i] = msr_view_mass(&s, i % s.n);
   read_world(&w, z);
@@ -553,7 +553,7 @@ static uint64_t calls_for(const msr_integrator *integrator, uint64_t steps) {
 
 /* In a scene, effect 0 is the springs. */
 static uint64_t calls_of_springs(const msr_integrator *integrator, uint64_t iterations) {
-  world w = deformed(&media[3], integrator, 0.01, MSR_SUBSTEPS_OFF);
+  world w = deformed(&media[3], integrator, 0.01, 1);
   advance(&w, iterations);
   const uint64_t calls = msr_state_calls(w.state, 0);
   close_world(&w);
@@ -685,7 +685,7 @@ static void check_substeps(const msr_integrator *integrator) {
     advance(&w, 20);
     read_world(&w, few);
     close_world(&w);
-    w = deformed(&media[m], integrator, 0.0025, MSR_SUBSTEPS_OFF);
+    w = deformed(&media[m], integrator, 0.0025, 1);
     advance(&w, 80);
     read_world(&w, many);
     close_world(&w);

@@ -105,7 +105,7 @@ static bool add_all(msr_scene *scene, msr_error *err) {
       {&mine, NULL},
   };
   for (size_t i = 0; i < 20; i++) {
-    const msr_mass mass = {.x = (double)i, .y = 5, .m = 1 + (double)i};
+    const msr_mass mass = {.x = 0.2 * (double)i, .y = 1.5, .m = 1 + (double)i};
     const size_t before = msr_scene_masses(scene);
     size_t index = 99;
     const bool added = done(msr_scene_add_mass(scene, &mass, &index, err), err);

@@ -227,8 +227,8 @@ static void frames_of_another_run_are_kept_or_replaced(void **unused) {
   assert_int_equal(msr_frames_open(plan, path_of("a"), NULL, false, &sink, &err), MSR_EUSAGE);
   char message[600];
   snprintf(message, sizeof message,
-           "%s: frames are there already; name another directory, or use "
-           "--force to replace them",
+           "%s: frames are there already; name another directory, or replace "
+           "them (--force)",
            path_of("a"));
   assert_string_equal(err.message, message);
   assert_true(exists(frame_path("a", 3)) && exists(frame_path("a", 99)));

@@ -221,7 +221,7 @@ static void air_varies_everywhere(void **state) {
 }
 
 /* The air that a state feels after a second, from F = c (w - v). */
-static vector felt(const msr_integrator *integrator, int64_t substeps) {
+static vector felt(const msr_integrator *integrator, uint64_t substeps) {
   msr_scene *scene = empty_scene(0.1);
   add_mass(scene, 0, 0, 3, 1, 0.7);
   must(msr_scene_add_force(scene, &msr_force_wind, &gusty, &why));
@@ -238,7 +238,7 @@ static vector felt(const msr_integrator *integrator, int64_t substeps) {
 /* To the rounding of adding v again. */
 static void all_integrators_feel_one_wind(void **state) {
   (void)state;
-  const int64_t substeps[] = {1, 2, 17};
+  const uint64_t substeps[] = {1, 2, 17};
   actor a = air_of(&gusty);
   const vector w = air(&a, 1);
   for (const msr_integrator *const *i = msr_integrators; *i; i++)

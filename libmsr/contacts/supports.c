@@ -2,9 +2,10 @@
  *
  * A mass moves along x, then along y. On each axis every pixel that it would enter is looked at: if
  * one is a support, the coordinate keeps its old value and the velocity along the axis is reflected
- * (times the restitution), with Coulomb friction on the other component. The rule is reversible and
- * keeps phase-space volume where restitution is 1 and friction 0, so that it doesn't heat a lattice
- * (an exact reflection does); since no pixel on the way is skipped, no speed passes through. */
+ * (times the restitution), with Coulomb friction on the other component. With restitution 1 and no
+ * friction each axis alone is reversible, and the two in turn keep phase-space volume: a lattice
+ * isn't heated, as it is by an exact reflection. Since no pixel on the way is skipped, no speed
+ * passes through. */
 #include "contacts/contact.h"
 
 #include "base/pixel.h"

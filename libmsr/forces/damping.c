@@ -49,7 +49,7 @@ static msr_status add(const void *self, void *scratch, const msr_view *s, double
   for (size_t r = 0; r < s->springs->n_runs; r++) {
     const msr_run_of_springs *run = &s->springs->run[r];
     for (size_t i = run->first; i < run->first + run->count; i++)
-      add_spring(s, i, i + (size_t)run->offset, z, fx, fy);
+      add_spring(s, i, i + run->offset, z, fx, fy);
   }
   for (size_t n = 0; n < s->springs->n_anchors; n++) {
     const msr_anchor *a = &s->springs->anchor[n];
@@ -86,7 +86,7 @@ static void damp_run(const msr_view *s, const msr_run_of_springs *run, decay *d,
                      double *vx, double *vy) {
   for (size_t n = 0; n < run->count; n++) {
     const size_t i = run->first + (backward ? run->count - 1 - n : n);
-    damp_spring(s, i, i + (size_t)run->offset, d, vx, vy);
+    damp_spring(s, i, i + run->offset, d, vx, vy);
   }
 }
 

@@ -13,7 +13,7 @@ static void add_rows(const msr_springs *springs, const double *weight, double *r
   for (size_t r = 0; r < springs->n_runs; r++) {
     const msr_run_of_springs *run = &springs->run[r];
     for (size_t s = 0; s < run->count; s++) {
-      const size_t i = run->first + s, j = i + (size_t)run->offset;
+      const size_t i = run->first + s, j = i + run->offset;
       const double w = weight ? *weight : run->k[s * run->stride];
       row[i] += 2 * w;
       row[j] += 2 * w;
@@ -42,7 +42,7 @@ double msri_mesh_longest(const msr_view *s) {
   for (size_t r = 0; r < s->springs->n_runs; r++) {
     const msr_run_of_springs *run = &s->springs->run[r];
     for (size_t n = 0; n < run->count; n++) {
-      const size_t i = run->first + n, j = i + (size_t)run->offset;
+      const size_t i = run->first + n, j = i + run->offset;
       longest =
           msri_max(longest, stretch(s->x[j] - s->x[i], s->y[j] - s->y[i], run->L[n * run->stride]));
     }

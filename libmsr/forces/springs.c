@@ -33,7 +33,7 @@ static inline void tensions(size_t count, const ends *e, const double *k, const 
 static void add_block(const msr_view *s, const msr_run_of_springs *run, size_t from, size_t count,
                       double *fx, double *fy) {
   double bx[BLOCK], by[BLOCK];
-  const size_t i = run->first + from, j = i + (size_t)run->offset;
+  const size_t i = run->first + from, j = i + run->offset;
   const ends e = {s->x + i, s->y + i, s->x + j, s->y + j};
   if (run->stride)
     tensions(count, &e, run->k + from, run->L + from, 1, bx, by);
@@ -77,7 +77,7 @@ static double energy(const void *self, const msr_view *s) {
   for (size_t r = 0; r < s->springs->n_runs; r++) {
     const msr_run_of_springs *run = &s->springs->run[r];
     for (size_t n = 0; n < run->count; n++) {
-      const size_t i = run->first + n, j = i + (size_t)run->offset;
+      const size_t i = run->first + n, j = i + run->offset;
       sum += stored(s->x[j] - s->x[i], s->y[j] - s->y[i], run->k[n * run->stride],
                     run->L[n * run->stride]);
     }

@@ -57,13 +57,8 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
   double *path = k.q;
   memset(path, 0, bytes);
   add_rates(n, row->stages, 1, row->b, k.v, path);
-  if (!system->drift) {
-    add_rates(n, row->stages, h, row->b, k.a, v);
-    for (size_t i = 0; i < n; i++) q[i] += h * path[i];
-    return MSR_OK;
-  }
   add_rates(n, row->stages, h / 2, row->b, k.a, v);
-  const msr_status status = system->drift(system->self, h, path, q, v);
+  const msr_status status = msr_system_drift(system, h, path, q, v);
   add_rates(n, row->stages, h / 2, row->b, k.a, v);
   return status;
 }

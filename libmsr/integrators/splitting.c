@@ -17,12 +17,6 @@ static msr_status damp(const msr_system *system, double t, double h, bool backwa
   return system->damp ? system->damp(system->self, t, h, backward, q, v) : MSR_OK;
 }
 
-static msr_status drift(const msr_system *system, double h, double *q, double *v) {
-  if (system->drift) return system->drift(system->self, h, v, q, v);
-  for (size_t i = 0; i < system->n; i++) q[i] += h * v[i];
-  return MSR_OK;
-}
-
 static msr_status accelerate(const msr_system *system, double t, const double *q, const double *v,
                              double *a) {
   return system->acceleration(system->self, t, q, system->damp ? NULL : v, a);
@@ -48,7 +42,8 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
     const double bh = row->kick[s] * h;
     for (size_t i = 0; i < system->n; i++) v[i] += bh * a[i];
     if (s == 0 && !row->symmetric) status = damp(system, interval->t, h, false, q, v);
-    if (status == MSR_OK && row->drift[s] != 0) status = drift(system, row->drift[s] * h, q, v);
+    if (status == MSR_OK && row->drift[s] != 0)
+      status = msr_system_drift(system, row->drift[s] * h, v, q, v);
     share += row->drift[s];
   }
   if (status != MSR_OK || !row->symmetric) return status;

@@ -8,18 +8,25 @@ static bool any(const msr_force *force) { return force->add != NULL; }
 
 static bool without_velocity(const msr_force *force) { return !force->uses_velocity; }
 
+static msr_status add_force(msr_state *state, const msri_term *term, const msr_view *view,
+                            double *fx, double *fy) {
+  const msr_status status =
+      term->force->add(term->self, state->scratch + term->scratch, view, fx, fy);
+  if (status != MSR_OK) state->failed = term->force;
+  return status;
+}
+
 msr_status msri_state_add_forces(msr_state *state, const msr_view *view,
-                                 bool (*wanted)(const msr_force *), double *f) {
-  memset(f, 0, 2 * view->n * sizeof *f);
-  for (size_t i = 0; i < state->plan->n_terms; i++) {
+                                 bool (*wanted)(const msr_force *), bool step, double *fx,
+                                 double *fy) {
+  msr_status status = MSR_OK;
+  for (size_t i = 0; i < state->plan->n_terms && status == MSR_OK; i++) {
     const msri_term *term = &state->plan->term[i];
     if (!wanted(term->force)) continue;
-    state->calls[i]++;
-    const msr_status status =
-        term->force->add(term->self, state->scratch + term->scratch, view, f, f + view->n);
-    if (status != MSR_OK) return status;
+    state->calls[i] += step;
+    status = add_force(state, term, view, fx, fy);
   }
-  return MSR_OK;
+  return status;
 }
 
 /* f[2n] / m. */
@@ -38,7 +45,9 @@ static void divide_by_mass(const msr_view *s, double *f) {
 static msr_status acceleration(void *self, double t, const double *q, const double *v, double *a) {
   msr_state *state = self;
   const msr_view view = msri_plan_view(state->plan, t, q, v);
-  const msr_status status = msri_state_add_forces(state, &view, v ? any : without_velocity, a);
+  memset(a, 0, 2 * view.n * sizeof *a);
+  const msr_status status =
+      msri_state_add_forces(state, &view, v ? any : without_velocity, true, a, a + view.n);
   divide_by_mass(&view, a);
   return status;
 }
@@ -53,8 +62,7 @@ static msr_status midpoint(msr_state *state, const msri_term *term, const msr_vi
     msr_view at = *view;
     at.vx = u, at.vy = u + n;
     memset(f, 0, 2 * n * sizeof *f);
-    const msr_status status =
-        term->force->add(term->self, state->scratch + term->scratch, &at, f, f + n);
+    const msr_status status = add_force(state, term, &at, f, f + n);
     if (status != MSR_OK) return status;
     divide_by_mass(&at, f);
     const double step = half ? h / 2 : h;
@@ -77,7 +85,9 @@ static msr_status damp(void *self, double t, double h, bool backward, const doub
                                   ? term->force->flow(term->self, state->scratch + term->scratch,
                                                       &view, h, backward, v, v + view.n)
                                   : midpoint(state, term, &view, h, v);
-    if (status != MSR_OK) return status;
+    if (status == MSR_OK) continue;
+    state->failed = term->force;
+    return status;
   }
   return MSR_OK;
 }
@@ -108,15 +118,10 @@ msr_system msri_state_system(msr_state *state) {
 
 msr_status msr_state_forces(msr_state *state, double *fx, double *fy, msr_error *err) {
   const msr_view view = msr_state_view(state);
-  const size_t n = view.n;
-  memset(fx, 0, n * sizeof *fx);
-  memset(fy, 0, n * sizeof *fy);
-  for (size_t i = 0; i < state->plan->n_terms; i++) {
-    const msri_term *term = &state->plan->term[i];
-    const msr_status status =
-        term->force->add(term->self, state->scratch + term->scratch, &view, fx, fy);
-    if (status != MSR_OK)
-      return msri_fail(err, status, "force %s: %s", term->force->name, msr_status_text(status));
-  }
-  return MSR_OK;
+  memset(fx, 0, view.n * sizeof *fx);
+  memset(fy, 0, view.n * sizeof *fy);
+  const msr_status status = msri_state_add_forces(state, &view, any, false, fx, fy);
+  return status == MSR_OK
+             ? MSR_OK
+             : msri_fail(err, status, "force %s: %s", state->failed->name, msr_status_text(status));
 }

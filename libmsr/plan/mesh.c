@@ -21,7 +21,7 @@ static const size_t NONE = SIZE_MAX;
  * spring (stride 0) or this spring's place in an array (stride 1). */
 static msr_status append(msri_mesh *mesh, size_t i, size_t j, const double *k, const double *L,
                          size_t stride, msr_error *err) {
-  const ptrdiff_t offset = (ptrdiff_t)(j - i);
+  const size_t offset = j - i;
   mesh->springs.n++;
   if (mesh->springs.n_runs > 0) {
     msr_run_of_springs *run = &mesh->run[mesh->springs.n_runs - 1];

@@ -80,8 +80,8 @@ static msr_status add_term(msr_plan *plan, const msr_force *force, const void *p
   plan->n_terms++;
   plan->effect[plan->n_effects - 1].on = true;
   plan->scratch_bytes += (force->scratch_size + 15) / 16 * 16;
-  plan->midpoint |= force->uses_velocity && !force->flow && plan->figures.integrator->splits;
-  plan->driven |= !force->conservative && !force->dissipative;
+  plan->midpoint |= force->uses_velocity && !force->flow;
+  plan->driven |= msri_force_drives(force);
   msri_format(reason, MSR_MESSAGE_SIZE, "asked for");
   if (force->describe) force->describe(term->params, start, reason, MSR_MESSAGE_SIZE);
   return MSR_OK;
@@ -165,7 +165,7 @@ static void count_memory(msr_plan *plan) {
   f->state_bytes = msri_state_bytes(plan);
 }
 
-static msr_status compile(msr_plan *plan, const msr_scene *scene, int64_t substeps,
+static msr_status compile(msr_plan *plan, const msr_scene *scene, uint64_t substeps,
                           msr_error *err) {
   msr_status status = scene->picture ? copy_picture(plan, scene->picture, err) : MSR_OK;
   if (status == MSR_OK) status = copy_masses(plan, scene, err);
@@ -201,8 +201,10 @@ msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *optio
   if (status != MSR_OK) return status;
   msr_plan *made = msri_alloc(1, sizeof *made, "a plan", err);
   if (!made) return MSR_ENOMEM;
-  made->conf = scene->conf;
-  made->figures.integrator = integrator;
+  made->figures = (msr_plan_figures){.integrator = integrator,
+                                     .iterations = scene->conf.iterations,
+                                     .images = scene->conf.images,
+                                     .dt = scene->conf.dt};
   status = compile(made, scene, options->substeps, err);
   if (status == MSR_OK)
     *plan = made;
@@ -214,7 +216,8 @@ msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *optio
 void msr_plan_free(msr_plan *plan) {
   if (!plan) return;
   for (size_t i = 0; i < plan->n_terms; i++) {
-    if (plan->term[i].force->release) plan->term[i].force->release(plan->term[i].made);
+    if (plan->term[i].made && plan->term[i].force->release)
+      plan->term[i].force->release(plan->term[i].made);
     free(plan->term[i].params);
   }
   if (plan->contact.release) plan->contact.release(plan->contact.self);

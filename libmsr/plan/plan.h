@@ -30,7 +30,6 @@ typedef struct msri_mesh {
 
 struct msr_plan {
   msr_plan_figures figures;
-  msr_conf conf;
   size_t n_picture;
   msr_picture *picture; /* NULL: none */
   msr_mass *mass;       /* [figures.masses - n_picture]: those added by a program */
@@ -41,9 +40,9 @@ struct msr_plan {
   size_t n_terms;
   size_t scratch_bytes; /* of all terms */
   bool midpoint;        /* a force on v has no flow of its own: states have room for one */
-  bool driven; /* a force is neither conservative nor dissipative: states follow its work */
-  msri_contact contact;             /* move NULL: nothing is ever in the way */
-  msr_effect *effect;               /* [n_effects]; the first n_terms are the terms */
+  bool driven;          /* a force drives: states follow its work */
+  msri_contact contact; /* move NULL: nothing is ever in the way */
+  msr_effect *effect;   /* [n_effects]; the first n_terms are the terms */
   char (*reason)[MSR_MESSAGE_SIZE]; /* of the effects */
   size_t n_effects;
   msri_notes notes;
@@ -52,6 +51,19 @@ struct msr_plan {
 /* The springs of a scene. On failure nothing is left. MSR_ENOMEM. */
 msr_status msri_mesh_create(const msr_scene *scene, msri_mesh *mesh, msr_error *err);
 void msri_mesh_clear(msri_mesh *mesh);
+
+/* Can the force bring in energy that no potential tells of? */
+static inline bool msri_force_drives(const msr_force *force) {
+  return !force->dissipative && (!force->conservative || force->uses_time);
+}
+
+/* The time after so many iterations and substeps: made of whole numbers, never summed, so that
+ * nothing depends on how a run is cut in pieces. */
+static inline double msri_plan_time(const msr_plan_figures *f, uint64_t iteration,
+                                    uint64_t substep) {
+  if (substep == f->substeps) return (double)(iteration + 1) * f->dt;
+  return (double)iteration * f->dt + (double)substep * f->h;
+}
 
 /* Start of every mass. x, y, vx, vy [masses]. */
 void msri_plan_start(const msr_plan *plan, double *x, double *y, double *vx, double *vy);
@@ -66,7 +78,7 @@ msr_view msri_plan_view(const msr_plan *plan, double t, const double *q, const d
 const char *msri_plan_mass_name(const msr_plan *plan, size_t mass, char *text, size_t size);
 
 /* Fills the stable step and the substeps in the figures, and what the user should know of them. */
-msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, int64_t substeps,
+msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t substeps,
                                  msr_error *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* stable.c - the largest step that is stable in any state, and the substeps that keep below it.
+/* stable.c - the largest step that is stable at any stretch, and the substeps that keep below it.
  *
  * Each force bounds its frequencies and rates of damping; with the integrator's limits on the
  * imaginary axis, S, and on the real one, D, a step is stable while h omega / S + h gamma / D < 1
@@ -47,47 +47,46 @@ static double fewest(const msr_plan_figures *f) {
   return msri_max(1, ceil(f->dt / f->safe_step * (1 - rounding)));
 }
 
-/* Says what the user didn't ask for: substeps, or a step that can't be trusted. */
-static msr_status explain(msr_plan *plan, bool automatic, double needed, msr_error *err) {
+static msr_status explain_no_step(msr_plan *plan, msr_error *err) {
   const msr_plan_figures *f = &plan->figures;
-  if (f->stable_step == 0)
-    return msri_notes_add(&plan->notes, err,
-                          "%s has no stable step on this scene: expect it to explode; use verlet",
-                          f->integrator->name);
+  return msri_notes_add(
+      &plan->notes, err, "%s declares no stable step for %s: expect it to explode; use verlet",
+      f->integrator->name, f->omega > 0 && f->integrator->stability == 0 ? "springs" : "damping");
+}
+
+/* Says what the user didn't ask for: substeps, or a step that can't be trusted. */
+static msr_status explain(msr_plan *plan, bool automatic, msr_error *err) {
+  const msr_plan_figures *f = &plan->figures;
+  if (f->stable_step == 0) return explain_no_step(plan, err);
   if (automatic && f->substeps > 1)
     return msri_notes_add(&plan->notes, err,
                           "%llu substeps of %.4g s per iteration: the largest step that is stable "
-                          "in any state is %.4g s, of which %g is safe here",
+                          "at any stretch is %.4g s, of which %g is safe here",
                           (unsigned long long)f->substeps, f->h, f->stable_step,
                           f->safe_step / f->stable_step);
-  if (f->h > f->stable_step)
-    return msri_notes_add(&plan->notes, err,
-                          "steps of %.4g s are above the largest that is stable in any state, "
-                          "%.4g s: the run may explode; %.0f substeps would be safe",
-                          f->h, f->stable_step, needed);
-  return MSR_OK;
+  if (f->h <= f->safe_step) return MSR_OK;
+  return msri_notes_add(&plan->notes, err,
+                        "steps of %.4g s are above %.4g s, the largest that is %s: the run may %s; "
+                        "%.10g substeps would be safe",
+                        f->h, f->h > f->stable_step ? f->stable_step : f->safe_step,
+                        f->h > f->stable_step ? "stable at any stretch" : "safe here",
+                        f->h > f->stable_step ? "explode" : "heat up and then explode", fewest(f));
 }
 
-msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, int64_t substeps,
+msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t substeps,
                                  msr_error *err) {
   msr_plan_figures *f = &plan->figures;
-  f->dt = plan->conf.dt;
-  f->iterations = plan->conf.iterations;
-  f->images = plan->conf.images;
-  if (substeps < MSR_SUBSTEPS_OFF)
-    return msri_fail(err, MSR_EUSAGE, "substeps must be 1 or more, 0 for as many as needed");
   const msr_status status = bound_rates(plan, start, err);
   if (status != MSR_OK) return status;
   f->stable_step = stable_step(f);
   f->safe_step = safe_share(plan) * f->stable_step;
-  const bool never = f->integrator->stability == 0 && f->omega > 0;
-  const double needed = never ? 1 : fewest(f);
+  const double needed = f->stable_step > 0 ? fewest(f) : 1;
   if (substeps == 0 && needed > most_substeps)
     return msri_fail(err, MSR_EINPUT,
                      "DT %g s is %g times the largest stable step, %g s; lower DT or "
                      "TENSION_RESSORT, or raise MASSE",
                      f->dt, f->dt / f->stable_step, f->stable_step);
-  f->substeps = substeps > 0 ? (uint64_t)substeps : substeps == 0 ? (uint64_t)needed : 1;
+  f->substeps = substeps > 0 ? substeps : (uint64_t)needed;
   f->h = f->dt / (double)f->substeps;
-  return explain(plan, substeps == 0, needed, err);
+  return explain(plan, substeps == 0, err);
 }

@@ -74,7 +74,7 @@ const char *msri_plan_mass_name(const msr_plan *plan, size_t mass, char *text, s
 }
 
 uint64_t msr_plan_frame_iteration(const msr_plan *plan, uint64_t frame) {
-  const uint64_t iterations = plan->conf.iterations, images = plan->conf.images;
+  const uint64_t iterations = plan->figures.iterations, images = plan->figures.images;
   /* i * iterations / images without overflow */
   return iterations / images * frame + iterations % images * frame / images;
 }

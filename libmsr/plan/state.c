@@ -3,6 +3,7 @@
 
 #include "forces/mesh.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,14 +23,15 @@ static size_t reserve(size_t *end, size_t bytes) {
 
 static layout lay_out(const msr_plan *plan) {
   const size_t vector = 2 * plan->figures.masses * sizeof(double);
+  const size_t vectors = plan->figures.integrator->vectors;
   layout l;
   size_t end = 0;
   reserve(&end, sizeof(msr_state));
   l.q = reserve(&end, vector);
   l.v = reserve(&end, vector);
-  l.work = reserve(&end, plan->figures.integrator->vectors * vector);
+  l.work = reserve(&end, (vectors > 0 ? vectors : 1) * vector);
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
-  l.drive = reserve(&end, plan->driven ? 3 * vector : 0);
+  l.drive = reserve(&end, plan->driven ? vector : 0);
   l.scratch = reserve(&end, plan->scratch_bytes);
   l.calls = reserve(&end, plan->n_effects * sizeof(uint64_t));
   l.bytes = end;
@@ -62,10 +64,10 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
 void msr_state_free(msr_state *state) { free(state); }
 
 void msr_state_copy(msr_state *to, const msr_state *from) {
+  assert(to->plan == from->plan);
   const layout l = lay_out(from->plan);
   to->iteration = from->iteration;
   to->substep = from->substep;
-  to->t = from->t;
   to->fresh = from->fresh;
   to->contacts = from->contacts;
   to->frames = from->frames;
@@ -91,13 +93,14 @@ uint64_t msri_hash_words(uint64_t hash, const void *words, size_t n) {
 
 uint64_t msr_state_hash(const msr_state *state) {
   const size_t n = state->plan->figures.masses;
-  uint64_t hash = msri_hash_words(MSRI_HASH_START, &state->t, 1);
+  const double t = msri_state_time(state);
+  uint64_t hash = msri_hash_words(MSRI_HASH_START, &t, 1);
   hash = msri_hash_words(hash, state->q, 2 * n);
   return msri_hash_words(hash, state->v, 2 * n);
 }
 
 msr_view msr_state_view(const msr_state *state) {
-  return msri_plan_view(state->plan, state->t, state->q, state->v);
+  return msri_plan_view(state->plan, msri_state_time(state), state->q, state->v);
 }
 
 msr_arrays msr_state_edit(msr_state *state) {

@@ -1,4 +1,4 @@
-/* state_file.c - a state in a file: a header of 8-byte words, then t, x, y, vx, vy as they are in
+/* state_file.c - a state in a file: a header of 8-byte words, then x, y, vx, vy as they are in
  * memory. The header says the byte order and a hash, so that a foreign or damaged file is refused.
  */
 #include "plan/state.h"
@@ -11,9 +11,10 @@
 
 typedef struct header {
   char magic[8];
-  uint64_t order; /* byte_order as the writer's machine holds it */
-  uint64_t masses, iteration, substep, contacts, frames;
-  double t;
+  uint64_t order;            /* byte_order as the writer's machine holds it */
+  uint64_t masses, substeps; /* of the plan, and DT: what the rest belongs to */
+  double dt;
+  uint64_t iteration, substep, contacts, frames;
   uint64_t hash; /* of all of the header before it and of what follows */
 } header;
 
@@ -29,11 +30,12 @@ msr_status msr_state_save(const msr_state *state, const char *path, msr_error *e
   const size_t n = state->plan->figures.masses, vector = 2 * n * sizeof(double);
   header h = {.order = byte_order,
               .masses = n,
+              .substeps = state->plan->figures.substeps,
+              .dt = state->plan->figures.dt,
               .iteration = state->iteration,
               .substep = state->substep,
               .contacts = state->contacts,
-              .frames = state->frames,
-              .t = state->t};
+              .frames = state->frames};
   memcpy(h.magic, magic, sizeof magic);
   h.hash = hash_of(&h, state->q, state->v);
   msri_file file;
@@ -57,6 +59,13 @@ static msr_status check(const msr_state *state, const char *path, const header *
                      "%s: it has %llu masses and the scene has %zu; load it into "
                      "a state of the scene that it was saved from",
                      path, (unsigned long long)h->masses, n);
+  const msr_plan_figures *f = &state->plan->figures;
+  if (h->dt != f->dt || h->substeps != f->substeps)
+    return msri_fail(
+        err, MSR_EINPUT,
+        "%s: its iterations are %g s in %llu substeps, those of the plan %g s in %llu; "
+        "load it into a state of the plan that it was saved from",
+        path, h->dt, (unsigned long long)h->substeps, f->dt, (unsigned long long)f->substeps);
   if (size != sizeof *h + 4 * n * sizeof(double))
     return msri_fail(err, MSR_EINPUT, "%s: %zu bytes where %zu are due; it is damaged", path, size,
                      sizeof *h + 4 * n * sizeof(double));
@@ -72,7 +81,6 @@ static msr_status restore(msr_state *state, const char *path, const header *h,
   if (status != MSR_OK) return status;
   memcpy(read->q, bytes, vector);
   memcpy(read->v, bytes + vector, vector);
-  read->t = h->t;
   read->iteration = h->iteration;
   read->substep = h->substep;
   read->contacts = h->contacts;
@@ -84,10 +92,9 @@ static msr_status restore(msr_state *state, const char *path, const header *h,
 }
 
 msr_status msr_state_load(msr_state *state, const char *path, msr_error *err) {
-  const size_t most = sizeof(header) + 4 * state->plan->figures.masses * sizeof(double);
   unsigned char *bytes;
   size_t size;
-  msr_status status = msri_file_read(path, most, &bytes, &size, err);
+  msr_status status = msri_file_read(path, SIZE_MAX / 2, &bytes, &size, err);
   if (status != MSR_OK) return status;
   header h = {.masses = 0};
   memcpy(&h, bytes, size < sizeof h ? size : sizeof h);

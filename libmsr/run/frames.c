@@ -61,7 +61,7 @@ static msr_status clear_frames(frames *f, bool overwrite, msr_error *err) {
     if (!overwrite)
       status = msri_fail(err, MSR_EUSAGE,
                          "%s: frames are there already; name another directory, "
-                         "or use --force to replace them",
+                         "or replace them (--force)",
                          f->path);
     else if (unlinkat(dirfd(directory), name, 0) != 0)
       status = msri_file_fail(f->path, "empty", err);

@@ -19,7 +19,7 @@ static msr_status step_to(msr_state *state, uint64_t iteration, const msri_poll 
 /* The first frame that is still to come: those that the state has passed by itself aren't. */
 static uint64_t next_frame(const msr_state *state) {
   uint64_t frame = state->frames;
-  const uint64_t images = state->plan->conf.images;
+  const uint64_t images = state->plan->figures.images;
   while (frame < images && msr_plan_frame_iteration(state->plan, frame) < state->iteration) frame++;
   return frame;
 }
@@ -30,12 +30,12 @@ msr_status msr_run(msr_state *state, const msr_run_options *options, msr_error *
   const msr_plan *plan = state->plan;
   const msri_poll poll = {options->poll, options->data};
   msr_status status = MSR_OK;
-  for (uint64_t f = next_frame(state); f < plan->conf.images && status == MSR_OK; f++) {
+  for (uint64_t f = next_frame(state); f < plan->figures.images && status == MSR_OK; f++) {
     status = step_to(state, msr_plan_frame_iteration(plan, f), &poll, err);
     if (status == MSR_OK) status = deliver(state, options, f, err);
     if (status == MSR_OK) state->frames = f + 1;
   }
-  if (status == MSR_OK) status = step_to(state, plan->conf.iterations, &poll, err);
+  if (status == MSR_OK) status = step_to(state, plan->figures.iterations, &poll, err);
   return status == MSR_OK ? msr_state_check(state, err) : status;
 }
 

@@ -1,7 +1,5 @@
 /* step.c - steps of an integrator: on any system, and on a state, iteration by iteration.
- *
- * Times are made from whole numbers of steps, never summed, so that a step begins at the very time
- * at which the one before ended and nothing depends on how a run is cut in pieces. */
+ * Each step begins at the very time at which the one before ended. */
 #include "run/step.h"
 
 #include "run/guard.h"
@@ -24,29 +22,23 @@ msr_status msr_integrate(const msr_integrator *integrator, const msr_system *sys
              : msri_fail(err, status, "%s: %s", integrator->name, msr_status_text(status));
 }
 
-static double time_of(const msr_plan_figures *f, uint64_t iteration, uint64_t substep) {
-  if (substep == f->substeps) return (double)(iteration + 1) * f->dt;
-  return (double)iteration * f->dt + (double)substep * f->h;
-}
-
 /* One substep; the caller has begun the integrator. */
 static msr_status substep(msr_state *state, const msr_system *system) {
   const msr_plan_figures *f = &state->plan->figures;
-  const msr_interval interval = {time_of(f, state->iteration, state->substep), f->h,
-                                 time_of(f, state->iteration, state->substep + 1)};
+  const msr_interval interval = {msri_state_time(state), f->h,
+                                 msri_plan_time(f, state->iteration, state->substep + 1)};
   const msr_status status =
       f->integrator->step(f->integrator, system, &interval, state->q, state->v, state->work);
   if (status != MSR_OK) return status;
-  state->t = interval.end;
   state->substep++;
-  return MSR_OK;
+  return msri_guard_follow(state);
 }
 
 static msr_status begin(msr_state *state, const msr_system *system) {
   const msr_integrator *integrator = state->plan->figures.integrator;
   if (state->fresh || !integrator->begin) return MSR_OK;
-  const msr_status status =
-      integrator->begin(integrator, system, state->t, state->q, state->v, state->work);
+  const msr_status status = integrator->begin(integrator, system, msri_state_time(state), state->q,
+                                              state->v, state->work);
   state->fresh = status == MSR_OK;
   return status;
 }
@@ -64,15 +56,21 @@ static msr_status iterate(msr_state *state, const msr_system *system, const msri
   return MSR_OK;
 }
 
+/* Which iteration a status stopped, and which force if it was one. */
+static msr_status explain(const msr_state *state, msr_status status, msr_error *err) {
+  return msri_fail(err, status, "iteration %llu: %s%s%s", (unsigned long long)state->iteration,
+                   state->failed ? state->failed->name : "", state->failed ? ": " : "",
+                   msr_status_text(status));
+}
+
 msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *poll, msr_error *err) {
   const msr_system system = msri_state_system(state);
+  state->failed = NULL;
   msr_status status = msri_guard_begin(state, err);
   if (status != MSR_OK) return status;
   for (uint64_t i = 0; i < iterations; i++) {
     status = iterate(state, &system, poll);
-    if (status != MSR_OK)
-      return msri_fail(err, status, "iteration %llu: %s", (unsigned long long)state->iteration,
-                       msr_status_text(status));
+    if (status != MSR_OK) return explain(state, status, err);
     if (state->iteration % MSRI_GUARD_PERIOD == 0) status = msr_state_check(state, err);
     if (status != MSR_OK) return status;
   }

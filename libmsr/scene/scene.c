@@ -58,10 +58,12 @@ msr_status msr_scene_set_contact(msr_scene *scene, double restitution, double fr
   return MSR_OK;
 }
 
-/* Is the point in a black pixel of the scene's picture? */
+/* Is the point in a black pixel of the scene's picture, or beyond its closed border? */
 static bool in_support(const msr_scene *scene, double x, double y) {
   const msr_picture *p = scene->picture;
-  if (!p || !(x >= 0 && x < (double)p->width && y >= 0 && y < (double)p->height)) return false;
+  if (!p) return false;
+  const bool inside = x >= 0 && x < (double)p->width && y >= 0 && y < (double)p->height;
+  if (!inside) return scene->options.closed_border;
   return msri_pixel_at(p, (size_t)x, p->height - 1 - (size_t)y) == MSRI_SUPPORT;
 }
 
