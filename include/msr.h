@@ -4,7 +4,9 @@
  *
  * A scene says what there is, a plan is a scene compiled once, a state is what moves, and a sink
  * takes the frames. Forces and integrators are const structs passed by address: one of your own
- * is used exactly as those of the library are.
+ * is used exactly as those of the library are. A whole run is
+ *
+ *     msr_scene_load, msr_plan_create, msr_state_create, msr_frames_open, msr_run, msr_sink_close
  *
  * World: x to the right, y up, one unit is one pixel [px], time in seconds [s]; masses, and with
  * them forces, are in the unit that the conf uses, written [kg] here. Pixel (column c, row r from
@@ -53,7 +55,7 @@ MSR_API const char *msr_version(void);
   X(MSR_EUSAGE, "wrong argument")                                                                  \
   X(MSR_EINPUT, "bad picture, conf or scene")                                                      \
   X(MSR_EUNSTABLE, "the simulation became unstable")                                               \
-  X(MSR_EINTR, "interrupted")
+  X(MSR_EINTR, "interrupted") /* for callbacks: the library never makes it */
 
 #define MSR_STATUS_NAME(name, text) name,
 typedef enum msr_status { MSR_STATUSES(MSR_STATUS_NAME) } msr_status;
@@ -173,12 +175,12 @@ typedef struct msr_force {
 
   /* Are these parameters valid? */
   msr_status (*check)(const void *params, msr_error *err);
-  /* Would it do nothing on this system? Then the plan leaves it out. `s` is the system at the
-   * start; the reason goes to `why`, one line. */
+  /* Would it do nothing on this scene? Then the plan leaves it out. `s` is the scene at the start;
+   * the reason goes to `why`, one line. */
   bool (*idle)(const void *params, const msr_view *s, char *why, size_t size);
   /* Why it's on, one line, from its parameters: "DRAG = 0.1 kg/s". */
   void (*describe)(const void *params, const msr_view *s, char *text, size_t size);
-  /* Compiles the parameters for the system `s` at its start. NULL: `self` is the params. */
+  /* Compiles the parameters for the scene `s` at its start. NULL: `self` is the params. */
   msr_status (*prepare)(const void *params, const msr_view *s, void **self, msr_error *err);
   void (*release)(void *self); /* frees what prepare made */
 
