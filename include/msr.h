@@ -436,7 +436,8 @@ typedef struct msr_plan_figures {
   double dt;          /* of an iteration [s] */
   double h;           /* of a step: dt / substeps [s] */
   double stable_step; /* steps below this are stable at any stretch [s]; 0: none; may be INFINITY */
-  double safe_step;   /* the library's own steps are no larger: 0.9 of it, 0.5 with contacts */
+  double safe_step;   /* the library's own steps are no larger: 0.9 of it; where supports may be hit
+                       * 0.5, and down to 1/16 where a fall can crush springs, m g H > 0.15 k L^2 */
   double omega;       /* bound of the angular frequencies, at any stretch [1/s] (Gershgorin) */
   double gamma;       /* bound of the rates of damping that limit the step [1/s] */
   size_t plan_bytes, state_bytes; /* of memory */
@@ -491,6 +492,10 @@ MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_err
  * far more kinetic and spring energy than the scene had to give: at the start, by what gravity and
  * pushes lost, by what wind did. */
 MSR_API msr_status msr_state_check(msr_state *state, msr_error *err);
+
+/* The most energy that has come from nowhere since the start, by the guard's looks, over what the
+ * scene had to give: above a few per cent, a smaller step is called for. */
+MSR_API double msr_state_energy_gain(const msr_state *state);
 
 /* Total force on each mass, fx, fy [masses] [kg px/s^2], contacts apart. What a force returns. */
 MSR_API msr_status msr_state_forces(msr_state *state, double *fx, double *fy, msr_error *err);

@@ -7,10 +7,11 @@
 /* What the guard compares with: see run/guard.c. */
 typedef struct msri_guard {
   bool begun;
-  double energy;    /* kinetic and spring energy at the start, and of a first kick */
-  double potential; /* of all other conservative forces at the start */
-  double fallen;    /* the most that it has been below that */
-  double work;      /* bound of what driving forces have done since */
+  double energy;         /* kinetic and spring energy at the start, and of a first kick */
+  double gravity, outer; /* potentials of gravity and of the other outer forces at the start */
+  double lost;           /* the most that these have lost */
+  double work;           /* bound of what driving forces have done since */
+  double gain;           /* the most energy from nowhere, over what there was to give */
 } msri_guard;
 
 struct msr_state {

@@ -1,10 +1,10 @@
 /* guard.c - watches a state for numbers that can't be true.
  *
- * A sound run can't have more kinetic and spring energy than the scene had to give: what it had at
+ * A sound run can't gain energy that the scene didn't have to give: kinetic and spring energy at
  * the start, plus the most that the other potentials (gravity, pushes) lost, plus what driving
- * forces (wind) have done, at most h sum |F v| in each substep. To that comes what is no flaw: one
- * kick of 2 h F by the outer forces of the start (a mass that rests on a support is kicked and
- * reflected for ever), and rounding.
+ * forces (wind) have done, h sum max(0, F v) in each substep. A fall out of the picture gives no
+ * more than one to its bottom. To that comes what is no flaw: one kick of 2 h F by the outer forces
+ * of the start (a mass that rests on a support is kicked and reflected for ever), and rounding.
  *
  * Near the limit of stability, with s = h omega / 2 near 1, the energy of the method itself swings:
  * by 1 / (1 - s^2) with Verlet, by (1 + s) / (1 - s) with symplectic Euler, at most 4 / (1 - s^2),
@@ -21,13 +21,13 @@
 static const double rounding = 1e-6; /* [px] */
 
 typedef struct energies {
-  double moving;    /* kinetic and of springs */
-  double potential; /* of all other conservative forces */
+  double moving;         /* kinetic and of springs */
+  double gravity, outer; /* potentials of gravity, and of all others but springs */
 } energies;
 
 static energies energies_of(const msr_state *state) {
   const msr_energy e = msri_state_energies(state);
-  return (energies){e.kinetic + e.spring, e.total - e.kinetic - e.spring};
+  return (energies){e.kinetic + e.spring, e.gravity, e.total - e.kinetic - e.spring - e.gravity};
 }
 
 /* ---- What the scene has to give */
@@ -40,7 +40,7 @@ msr_status msri_guard_follow(msr_state *state) {
   memset(f, 0, n * sizeof *f);
   const msr_status status =
       msri_state_add_forces(state, &view, msri_force_drives, false, f, f + view.n);
-  for (size_t i = 0; i < n; i++) work += fabs(f[i] * state->v[i]);
+  for (size_t i = 0; i < n; i++) work += msri_max(0, f[i] * state->v[i]);
   state->guard.work += state->plan->figures.h * work;
   return status;
 }
@@ -76,7 +76,8 @@ msr_status msri_guard_begin(msr_state *state, msr_error *err) {
       .begun = status == MSR_OK,
       .energy =
           start.moving + kick_energy(&view, figures->h, f) + rounding_energy(&view, figures->omega),
-      .potential = start.potential,
+      .gravity = start.gravity,
+      .outer = start.outer,
   };
   return status == MSR_OK
              ? MSR_OK
@@ -103,24 +104,26 @@ static size_t culprit(const msr_view *s) {
   return fastest;
 }
 
-/* What to do: a step that is safe, in the user's terms. */
-static void advise(const msr_plan_figures *f, char *text, size_t size) {
+/* What to do: a step that is stable, in the user's terms. */
+static void advise(const msr_plan_figures *f, bool finite, char *text, size_t size) {
   const double substeps = ceil(f->dt / f->safe_step);
   if (f->stable_step == 0)
     msri_format(text, size, "%s has no stable step here; use verlet", f->integrator->name);
   else if (f->h > f->safe_step)
-    msri_format(text, size, "DT %.3g or %.10g substeps would have worked", 0.995 * f->safe_step,
-                substeps);
+    msri_format(text, size, "stable: DT %.3g, or %.10g substeps", 0.995 * f->safe_step, substeps);
+  else if (finite)
+    msri_format(text, size,
+                "the step is below the limit of stability, %.3g s: try %llu substeps, or damping",
+                f->stable_step, 4 * (unsigned long long)f->substeps);
   else
-    msri_format(text, size, "the step is below the limit of stability, %.3g s: try %llu substeps",
-                f->stable_step, 2 * (unsigned long long)f->substeps);
+    msri_format(text, size, "the step is stable: look for a force or a value that is too large");
 }
 
 /* `ratio`: energy over what there was to give; not finite: a number isn't. */
 static msr_status refuse(const msr_state *state, double ratio, msr_error *err) {
   const msr_view view = msr_state_view(state);
   char name[64], what[96] = "is no longer finite", advice[192];
-  advise(&state->plan->figures, advice, sizeof advice);
+  advise(&state->plan->figures, isfinite(ratio), advice, sizeof advice);
   msri_plan_mass_name(state->plan, culprit(&view), name, sizeof name);
   if (isfinite(ratio))
     msri_format(what, sizeof what,
@@ -129,14 +132,24 @@ static msr_status refuse(const msr_state *state, double ratio, msr_error *err) {
                    (unsigned long long)state->iteration, view.t, name, what, advice);
 }
 
+/* What gravity has given since the start: a fall out of the picture counts to its bottom only. */
+static double given_by_gravity(const msr_state *state, double fallen) {
+  return state->plan->picture ? msri_min(fallen, fabs(state->guard.gravity)) : fallen;
+}
+
 msr_status msr_state_check(msr_state *state, msr_error *err) {
   const msr_status status = msri_guard_begin(state, err);
   if (status != MSR_OK) return status;
   msri_guard *guard = &state->guard;
   const energies now = energies_of(state);
-  guard->fallen = msri_max(guard->fallen, guard->potential - now.potential);
-  const double given = guard->energy + guard->fallen + guard->work;
-  const bool finite = isfinite(now.moving) && isfinite(now.potential);
-  if (finite && now.moving <= allowance(&state->plan->figures) * given) return MSR_OK;
-  return refuse(state, finite ? now.moving / given : (double)NAN, err);
+  const double fallen = guard->gravity - now.gravity, pushed = guard->outer - now.outer;
+  guard->lost = msri_max(guard->lost, given_by_gravity(state, fallen) + pushed);
+  const double given = guard->energy + guard->lost + guard->work;
+  const double gain = now.moving - guard->energy - fallen - pushed - guard->work;
+  const bool finite = isfinite(now.moving) && isfinite(gain);
+  if (finite && given > 0) guard->gain = msri_max(guard->gain, gain / given);
+  if (finite && gain <= (allowance(&state->plan->figures) - 1) * given) return MSR_OK;
+  return refuse(state, finite ? 1 + gain / given : (double)NAN, err);
 }
+
+double msr_state_energy_gain(const msr_state *state) { return state->guard.gain; }
