@@ -50,7 +50,8 @@ EX_SRC   := $(wildcard examples/*.c)
 BITS_SRC := $(wildcard tests/bits/*.c)
 SOURCES  := $(LIB_SRC) $(CLI_SRC) $(TEST_SRC) $(FUZZ_SRC) $(BITS_SRC) $(EX_SRC)
 HEADERS  := $(wildcard include/*.h libmsr/*/*.h cli/*.h tests/*.h tests/fuzz/*.h)
-DOCS     := $(wildcard README.md LICENSE CHANGELOG.md examples/scenes/*)
+DOCS     := $(wildcard README.md LICENSE CHANGELOG.md docs/*.md docs/images/*.png include/*.h \
+             examples/*.md examples/*.c examples/scenes/*)
 MAN      := $(wildcard docs/*.1)
 
 object    = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
@@ -231,7 +232,7 @@ uninstall:
 	rm -f $(addprefix $(DESTDIR)$(PREFIX)/,bin/msr include/msr.h) \
 	  $(addprefix $(DESTDIR)$(LIBDIR)/,$(LIBS) pkgconfig/msr.pc) \
 	  $(addprefix $(DESTDIR)$(DOCDIR)/,$(DOCS)) $(addprefix $(DESTDIR)$(MANDIR)/,$(notdir $(MAN)))
-	rmdir $(addprefix $(DESTDIR)$(DOCDIR),/examples/scenes /examples /) 2>/dev/null || true
+	rmdir $(addprefix $(DESTDIR)$(DOCDIR)/,examples/scenes examples docs/images docs include) $(DESTDIR)$(DOCDIR) 2>/dev/null || true
 
 ## clean: removes build/, where all is
 clean:

@@ -159,8 +159,8 @@ static inline double msr_view_mass(const msr_view *s, size_t i) { return s->m[i 
 
 /* A kind of force. Only name, summary and add are required; NULL, false and 0 do for the rest, but
  * conservative goes with energy, both or neither.
- * A callback's status other than MSR_OK ends what called it and comes back unchanged; a callback
- * that is given err fills it.
+ * A callback's status other than MSR_OK ends what called it and comes back unchanged; one that is
+ * given err may say why.
  * Each may be called from several threads at once, with different scratch. */
 typedef struct msr_force {
   const char *name;    /* one word */

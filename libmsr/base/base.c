@@ -16,12 +16,32 @@ const char *msr_status_text(msr_status status) {
   return i < sizeof status_texts / sizeof *status_texts ? status_texts[i] : "unknown status";
 }
 
+static void fill(msr_error *err, msr_status status, const char *format, va_list arguments) {
+  err->status = status;
+  msri_vformat(err->message, sizeof err->message, format, arguments);
+  for (char *c = err->message; *c; c++)
+    if ((unsigned char)*c < ' ' || *c == 0x7f) *c = '?';
+}
+
 msr_status msri_fail(msr_error *err, msr_status status, const char *format, ...) {
   if (!err) return status;
-  err->status = status;
   va_list arguments;
   va_start(arguments, format);
-  msri_vformat(err->message, sizeof err->message, format, arguments);
+  fill(err, status, format, arguments);
+  va_end(arguments);
+  return status;
+}
+
+msr_status msri_hand_on(msr_error *err, msr_status status, const msr_error *said,
+                        const char *format, ...) {
+  if (!err) return status;
+  if (said->status != MSR_OK) {
+    *err = *said;
+    return status;
+  }
+  va_list arguments;
+  va_start(arguments, format);
+  fill(err, status, format, arguments);
   va_end(arguments);
   return status;
 }

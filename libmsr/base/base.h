@@ -10,8 +10,13 @@
 #define MSRI_PRINTF(text, first)
 #endif
 
-/* Fills err (may be NULL) and returns status. A message too long is cut at MSR_MESSAGE_SIZE. */
+/* Fills err (may be NULL) and returns status. A message too long is cut at MSR_MESSAGE_SIZE; what
+ * would not stay on one line of a terminal (from a file's name, say) becomes '?'. */
 msr_status msri_fail(msr_error *err, msr_status status, const char *format, ...) MSRI_PRINTF(3, 4);
+
+/* Hands on the status of a callback with what it said, or with this sentence if it said nothing. */
+msr_status msri_hand_on(msr_error *err, msr_status status, const msr_error *said,
+                        const char *format, ...) MSRI_PRINTF(4, 5);
 
 /* calloc with the error filled: NULL on failure and on overflow; count or size 0 gives a block
  * that free takes. `what` completes "out of memory for ". */

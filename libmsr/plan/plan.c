@@ -63,10 +63,12 @@ static msr_status compile_force(msri_term *term, const void *params, const msr_v
   if (params) memcpy(term->params, params, force->params_size);
   term->self = term->params;
   if (!force->prepare) return MSR_OK;
-  const msr_status status = force->prepare(term->params, start, &term->made, err);
-  if (status != MSR_OK) free(term->params);
+  msr_error said = {MSR_OK, ""};
+  const msr_status status = force->prepare(term->params, start, &term->made, &said);
   term->self = term->made;
-  return status;
+  if (status == MSR_OK) return MSR_OK;
+  free(term->params);
+  return msri_hand_on(err, status, &said, "force %s: %s", force->name, msr_status_text(status));
 }
 
 static msr_status add_term(msr_plan *plan, const msr_force *force, const void *params,

@@ -22,6 +22,10 @@ static msr_status bound_rates(msr_plan *plan, const msr_view *start, msr_error *
     if (status != MSR_OK)
       return msri_fail(err, status, "%s: no bound for the stable step: %s", term->force->name,
                        msr_status_text(status));
+    if (!(of_x >= 0 && of_v >= 0))
+      return msri_fail(err, MSR_EUSAGE,
+                       "force %s: rates must be numbers of 0 or more, not %g and %g",
+                       term->force->name, of_x, of_v);
     const bool exact = plan->figures.integrator->splits && term->force->flow;
     omega2 += of_x;
     plan->figures.gamma += exact ? 0 : of_v;

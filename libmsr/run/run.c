@@ -1,11 +1,20 @@
 /* run.c - a whole run: iterations up to each frame, the guard, then the sinks. */
 #include "run/step.h"
 
+static msr_status give(const msr_sink *sink, const msr_state *state, uint64_t frame,
+                       msr_error *err) {
+  msr_error said = {MSR_OK, ""};
+  const msr_status status = sink->write(sink->self, state, frame, &said);
+  if (status == MSR_OK) return MSR_OK;
+  return msri_hand_on(err, status, &said, "frame %llu: %s", (unsigned long long)frame,
+                      msr_status_text(status));
+}
+
 static msr_status deliver(msr_state *state, const msr_run_options *options, uint64_t frame,
                           msr_error *err) {
   msr_status status = msr_state_check(state, err);
   for (size_t s = 0; s < options->n_sinks && status == MSR_OK; s++)
-    status = options->sinks[s].write(options->sinks[s].self, state, frame, err);
+    status = give(&options->sinks[s], state, frame, err);
   return status;
 }
 
@@ -41,7 +50,9 @@ msr_status msr_run(msr_state *state, const msr_run_options *options, msr_error *
 
 msr_status msr_sink_close(msr_sink *sink, msr_error *err) {
   if (!sink->close) return MSR_OK;
-  const msr_status status = sink->close(sink->self, err);
+  msr_error said = {MSR_OK, ""};
+  const msr_status status = sink->close(sink->self, &said);
   *sink = (msr_sink){0};
-  return status;
+  if (status == MSR_OK) return MSR_OK;
+  return msri_hand_on(err, status, &said, "a sink: %s", msr_status_text(status));
 }

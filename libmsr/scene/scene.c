@@ -137,7 +137,11 @@ static msr_status check_force(const msr_force *force, const void *params, msr_er
     return msri_fail(err, MSR_EUSAGE, "force %s: conservative goes with energy", force->name);
   if (force->params_size > 0 && !params)
     return msri_fail(err, MSR_EUSAGE, "force %s needs its parameters", force->name);
-  return force->check ? force->check(params, err) : MSR_OK;
+  if (!force->check) return MSR_OK;
+  msr_error said = {MSR_OK, ""};
+  const msr_status status = force->check(params, &said);
+  if (status == MSR_OK) return MSR_OK;
+  return msri_hand_on(err, status, &said, "force %s: %s", force->name, msr_status_text(status));
 }
 
 msr_status msr_scene_add_force(msr_scene *scene, const msr_force *force, const void *params,
