@@ -3,6 +3,7 @@
 #include "commands.h"
 #include "guess.h"
 #include "parse.h"
+#include "places.h"
 #include "report.h"
 
 #include <string.h>
@@ -28,19 +29,9 @@ static msr_status check_options(const settings *s, msr_error *err) {
   return MSR_OK;
 }
 
-static bool is_stdout(const char *path) { return path && strcmp(path, "-") == 0; }
-
-static msr_status check_outputs(const settings *s, msr_error *err) {
-  if (is_stdout(s->trajectory)) {
-    return fail(err, MSR_EUSAGE, "--trajectory can't go to standard output; name a file");
-  }
-  if (is_stdout(s->stats) && is_stdout(s->output) && !s->no_frames) {
-    return fail(err, MSR_EUSAGE, "--stats and --output can't both go to standard output");
-  }
-  if (s->stats && s->trajectory && strcmp(s->stats, s->trajectory) == 0) {
-    return fail(err, MSR_EUSAGE, "--stats and --trajectory both name '%s'", s->stats);
-  }
-  return MSR_OK;
+static msr_status check_trajectory(const settings *s, msr_error *err) {
+  if (!s->trajectory || strcmp(s->trajectory, "-") != 0) return MSR_OK;
+  return fail(err, MSR_EUSAGE, "--trajectory can't go to standard output; name a file");
 }
 
 /* What stands where a file should, and is none, may be a command ill spelt. */
@@ -70,7 +61,7 @@ static msr_status check_files(const settings *s, msr_error *err) {
 
 msr_status settings_check(const settings *s, msr_error *err) {
   static msr_status (*const checks[])(const settings *, msr_error *) = {
-      check_command, check_options, check_outputs, check_files};
+      check_command, check_options, check_trajectory, check_files, places_check};
   msr_status status = MSR_OK;
   for (size_t i = 0; i < sizeof checks / sizeof checks[0] && status == MSR_OK; i++) {
     status = checks[i](s, err);

@@ -14,7 +14,8 @@ static const char examples[] =
     "examples\n"
     "  msr scene.ppm scene.conf                   frames/frame-000000.ppm ...\n"
     "  msr plan scene.ppm scene.conf --wind 40    look before you run\n"
-    "  msr scene.ppm scene.conf -o - | ffmpeg -f image2pipe -c:v ppm -i - out.mp4\n\n"
+    "  msr scene.ppm scene.conf --scale 4 -o - |\n"
+    "    ffmpeg -f image2pipe -framerate 25 -i - -pix_fmt yuv420p film.mp4\n\n"
     "'msr COMMAND -h' tells the options of a command, 'man msr' all about them.\n";
 
 void help_print_version(FILE *out) {

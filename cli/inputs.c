@@ -1,6 +1,5 @@
-/* inputs.c - tells the picture from the conf, and keeps both from being overwritten. The first
- * bytes of a file decide; those of a pipe can be read only once, so then the other file decides,
- * and if that doesn't help, the names. */
+/* inputs.c - tells the picture from the conf. The first bytes of a file decide; those of a pipe can
+ * be read only once, so then the other file decides, and if that doesn't help, the names. */
 #include "inputs.h"
 
 #include "report.h"
@@ -39,34 +38,5 @@ msr_status inputs_find(const settings *s, inputs *in, msr_error *err) {
   }
   const bool swap = swapped(s->file, what);
   *in = (inputs){s->file[swap], s->file[!swap]};
-  return MSR_OK;
-}
-
-static bool same_file(const char *a, const char *b) {
-  struct stat p, q;
-  return stat(a, &p) == 0 && stat(b, &q) == 0 && p.st_dev == q.st_dev && p.st_ino == q.st_ino;
-}
-
-/* Is it a frame in this directory, which --force would remove? */
-static bool frame_in(const char *path, const char *dir) {
-  const char *const slash = strrchr(path, '/');
-  const char *const name = slash ? slash + 1 : path;
-  char parent[4096];
-  snprintf(parent, sizeof parent, "%.*s", slash ? (int)(name - path) : 1, slash ? path : ".");
-  return strncmp(name, "frame-", 6) == 0 && same_file(parent, dir);
-}
-
-msr_status inputs_check_safe(const settings *s, msr_error *err) {
-  const char *const outputs[] = {s->output, s->stats, s->trajectory};
-  for (size_t i = 0; i < s->n_files; i++) {
-    const char *const input = s->file[i];
-    for (size_t o = 0; o < sizeof outputs / sizeof outputs[0]; o++) {
-      if (!outputs[o] || strcmp(outputs[o], "-") == 0 || !same_file(input, outputs[o])) continue;
-      return fail(err, MSR_EUSAGE, "'%s' is an input and can't be written over", outputs[o]);
-    }
-    if (s->force && frame_in(input, s->output)) {
-      return fail(err, MSR_EUSAGE, "--force would remove '%s', which is an input", input);
-    }
-  }
   return MSR_OK;
 }

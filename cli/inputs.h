@@ -11,7 +11,4 @@ typedef struct inputs {
 /* Which of the two operands is the picture; pipes aren't read. MSR_EINPUT if both are. */
 msr_status inputs_find(const settings *s, inputs *in, msr_error *err);
 
-/* MSR_EUSAGE if an output would overwrite an input. */
-msr_status inputs_check_safe(const settings *s, msr_error *err);
-
 #endif

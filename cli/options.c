@@ -9,7 +9,7 @@
 #define FIELD(name) .field = offsetof(settings, name)
 
 const option all_options[] = {
-    {'o', "output", "DIR", "where the frames go (frames); -: to stdout", FOR_SCENES, &a_path,
+    {'o', "output", "DIR", "where the frames go (frames); -: to stdout", FOR_SCENES, &a_directory,
      FIELD(output), .clashes = "--no-frames", .group = "Results"},
     {0, "force", NULL, "replace the frames that DIR holds already", FOR_SCENES, &a_flag,
      FIELD(force), .clashes = "--no-frames"},

@@ -9,7 +9,7 @@
 
 /* --push X,Y,FX,FY */
 typedef struct push {
-  int64_t column, row; /* of a pixel of the picture, from the top left */
+  uint64_t column, row; /* of a pixel of the picture, from the top left */
   double fx, fy;
 } push;
 
@@ -20,8 +20,8 @@ typedef struct settings {
   size_t n_files;
   const char *output, *stats, *trajectory; /* NULL: not asked for */
   const msr_integrator *integrator;        /* NULL: auto */
-  int64_t substeps;                        /* as in msr_plan_options */
-  int64_t neighbours, border_closed, seed, scale;
+  uint64_t substeps;                       /* as in msr_plan_options */
+  uint64_t neighbours, border_closed, seed, scale;
   double wind, gust, gust_time, drag, damping, restitution, friction;
   push *pushes; /* [n_pushes] */
   size_t n_pushes;

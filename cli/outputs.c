@@ -1,7 +1,15 @@
-/* outputs.c - opens and closes what a run writes: one row per output. */
+/* outputs.c - opens and closes what a run writes: one row per output. The frames' directory is made
+ * first, since other outputs may be in it, and goes again if one of them can't be opened. */
 #include "outputs.h"
 
+#include "report.h"
 #include "simulation.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static const char *frames_path(const settings *s) { return s->no_frames ? NULL : s->output; }
 static const char *stats_path(const settings *s) { return s->stats; }
@@ -36,15 +44,62 @@ static const output rows[MOST_OUTPUTS] = {
     {frames_path, open_frames},
 };
 
-msr_status outputs_open(const settings *s, const msr_plan *plan, outputs *out, msr_error *err) {
+static msr_status open_rows(const settings *s, const msr_plan *plan, outputs *out, msr_error *err) {
   msr_status status = MSR_OK;
-  out->n = 0;
   for (size_t i = 0; i < MOST_OUTPUTS && status == MSR_OK; i++) {
     if (!rows[i].path(s)) continue;
     status = rows[i].open(s, plan, &out->sink[out->n], err);
     if (status == MSR_OK) out->n++;
   }
   if (status != MSR_OK) outputs_close(out, NULL);
+  return status;
+}
+
+static msr_status cannot_make(const char *dir, msr_error *err) {
+  char reason[128] = "unknown error";
+  strerror_r(errno, reason, sizeof reason);
+  return fail(err, MSR_EIO, "%s: cannot make it: %s; name another directory", dir, reason);
+}
+
+/* Makes a directory and those above it; made[i]: the first i bytes of its path were not there. */
+static bool make_directory(char *path, bool *made) {
+  for (size_t end = 1; path[end - 1]; end++) {
+    const char next = path[end];
+    if (next && next != '/') continue;
+    path[end] = '\0';
+    made[end] = mkdir(path, 0777) == 0;
+    if (!made[end] && errno != EEXIST) return false;
+    path[end] = next;
+  }
+  return true;
+}
+
+/* Removes what was made, from the deepest up. */
+static void unmake_directory(char *path, const bool *made) {
+  for (size_t end = strlen(path); end > 0; end--) {
+    path[end] = '\0';
+    if (made[end]) rmdir(path);
+  }
+}
+
+static msr_status open_in(char *path, bool *made, const settings *s, const msr_plan *plan,
+                          outputs *out, msr_error *err) {
+  const msr_status status =
+      make_directory(path, made) ? open_rows(s, plan, out, err) : cannot_make(s->output, err);
+  if (status != MSR_OK) unmake_directory(path, made);
+  return status;
+}
+
+msr_status outputs_open(const settings *s, const msr_plan *plan, outputs *out, msr_error *err) {
+  out->n = 0;
+  if (s->no_frames || strcmp(s->output, "-") == 0) return open_rows(s, plan, out, err);
+  char *const path = strdup(s->output);
+  bool *const made = calloc(strlen(s->output) + 1, sizeof *made);
+  const msr_status status = path && made
+                                ? open_in(path, made, s, plan, out, err)
+                                : fail(err, MSR_ENOMEM, "out of memory for the frames' directory");
+  free(path);
+  free(made);
   return status;
 }
 

@@ -11,7 +11,7 @@ typedef struct outputs {
   size_t n;
 } outputs;
 
-/* Opens all that the settings ask for, or nothing: a failure leaves no file behind.
+/* Opens all that the settings ask for, or nothing: a failure leaves no file or directory behind.
  * MSR_EUSAGE, MSR_EIO, MSR_ENOMEM. */
 msr_status outputs_open(const settings *s, const msr_plan *plan, outputs *out, msr_error *err);
 

@@ -68,7 +68,7 @@ static void print_memory(const settings *s, const msr_plan_figures *f) {
 }
 
 static void print_frames(const settings *s, const msr_plan_figures *f) {
-  const uint64_t scale = (uint64_t)s->scale;
+  const uint64_t scale = s->scale;
   const char *const dir = s->output;
   label("frames");
   if (s->no_frames) {

@@ -8,18 +8,27 @@
 #include <inttypes.h>
 #include <string.h>
 
+typedef struct progress {
+  char text[80];
+} progress;
+
+/* How far a run came that was stopped: "after 1 of 3 frames, which is whole". */
+static progress progress_of(const watch *w, const char *quality) {
+  progress p = {"before any frame"};
+  if (w->frames == 0) return p;
+  snprintf(p.text, sizeof p.text, "after %" PRIu64 " of %" PRIu64 " frame%s, which %s %s",
+           w->frames, w->plan.images, w->plan.images == 1 ? "" : "s", w->frames == 1 ? "is" : "are",
+           quality);
+  return p;
+}
+
 /* What stopped a run, and how far it had come. */
 static msr_status explain(const watch *w, msr_status status, msr_error *err) {
-  char *const message = err->message;
-  if (status == MSR_EINTR) {
-    return fail(err, status, "interrupted after %" PRIu64 " of %" PRIu64 " frames; these are whole",
-                w->frames, w->plan.images);
-  }
+  const size_t length = strlen(err->message);
+  if (status == MSR_EINTR) return fail(err, status, "interrupted %s", progress_of(w, "whole").text);
   if (status == MSR_EUNSTABLE) {
-    const size_t length = strlen(message);
-    snprintf(message + length, sizeof err->message - length,
-             " (after %" PRIu64 " of %" PRIu64 " frames, which are sound)", w->frames,
-             w->plan.images);
+    snprintf(err->message + length, sizeof err->message - length, " (%s)",
+             progress_of(w, "sound").text);
   }
   return status;
 }
@@ -45,7 +54,7 @@ static msr_status simulate(const settings *s, const msr_plan *plan, msr_error *e
   watch_start(&w, s, plan);
   status = outputs_open(s, plan, &out, err);
   if (status == MSR_OK) status = advance(&w, state, &out, err);
-  if (status == MSR_OK) watch_print_summary(&w);
+  if (status == MSR_OK) watch_print_summary(&w, state);
   msr_state_free(state);
   return status;
 }

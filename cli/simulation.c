@@ -9,19 +9,15 @@ static msr_status load(const settings *s, msr_scene **scene, msr_error *err) {
                                      .attach = s->attach,
                                      .closed_border = s->border_closed != 0};
   inputs in;
-  msr_status status = inputs_check_safe(s, err);
-  if (status == MSR_OK) status = inputs_find(s, &in, err);
+  msr_status status = inputs_find(s, &in, err);
   if (status == MSR_OK) status = msr_scene_load(in.picture, in.conf, &options, scene, err);
   return status == MSR_EIO ? MSR_EINPUT : status;
 }
 
 static msr_status add_air(const settings *s, msr_scene *scene, msr_error *err) {
   const msr_drag drag = {.c = s->drag};
-  const msr_wind wind = {.c = s->drag,
-                         .speed = s->wind,
-                         .gust = s->gust,
-                         .gust_time = s->gust_time,
-                         .seed = (uint64_t)s->seed};
+  const msr_wind wind = {
+      .c = s->drag, .speed = s->wind, .gust = s->gust, .gust_time = s->gust_time, .seed = s->seed};
   if (option_given(s, "--wind")) return msr_scene_add_force(scene, &msr_force_wind, &wind, err);
   if (option_given(s, "--drag")) return msr_scene_add_force(scene, &msr_force_drag, &drag, err);
   return MSR_OK;
@@ -53,28 +49,14 @@ msr_style simulation_style(const settings *s) {
   return style;
 }
 
-/* Frames that can't be drawn are better refused before anything is written. */
-static msr_status check_frames(const settings *s, const msr_plan *plan, msr_error *err) {
-  const msr_style style = simulation_style(s);
-  msr_renderer *renderer = NULL;
-  if (s->no_frames) return MSR_OK;
-  const msr_status status = msr_renderer_create(plan, &style, &renderer, err);
-  msr_renderer_free(renderer);
-  return status;
-}
-
 static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **plan,
                           msr_error *err) {
-  const msr_plan_options options = {.integrator = s->integrator, .substeps = (uint64_t)s->substeps};
+  const msr_plan_options options = {.integrator = s->integrator, .substeps = s->substeps};
   const char *text;
-  msr_status status = msr_plan_create(scene, &options, plan, err);
+  const msr_status status = msr_plan_create(scene, &options, plan, err);
   if (status != MSR_OK) return status;
   for (size_t i = 0; (text = msr_plan_warning(*plan, i)); i++) tell(s, "note", text);
-  status = check_frames(s, *plan, err);
-  if (status == MSR_OK) return MSR_OK;
-  msr_plan_free(*plan);
-  *plan = NULL;
-  return status;
+  return MSR_OK;
 }
 
 msr_status simulation_plan(const settings *s, msr_plan **plan, msr_error *err) {

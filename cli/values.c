@@ -6,7 +6,6 @@
 
 #include <errno.h>
 #include <float.h>
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,9 +20,16 @@ static bool read_flag(const kind *k, const char *text, void *field) {
   return true;
 }
 
+/* Other names of standard output. */
+static const char *const standard_output[] = {"/dev/stdout", "/dev/fd/1", NULL};
+
 static bool read_path(const kind *k, const char *text, void *field) {
   (void)k;
-  *(const char **)field = text;
+  const char **path = field;
+  *path = text;
+  for (const char *const *i = standard_output; *i; i++) {
+    if (strcmp(text, *i) == 0) *path = "-";
+  }
   return *text != '\0';
 }
 
@@ -40,14 +46,14 @@ static bool read_real(const kind *k, const char *text, void *field) {
 static bool read_whole(const kind *k, const char *text, void *field) {
   for (const named_value *n = k->names; n && n->name; n++) {
     if (strcmp(text, n->name) != 0) continue;
-    *(int64_t *)field = n->value;
+    *(uint64_t *)field = n->value;
     return true;
   }
   if (k->most == 0 || !made_of(text, "0123456789")) return false;
   errno = 0;
-  const long long value = strtoll(text, NULL, 10);
+  const unsigned long long value = strtoull(text, NULL, 10);
   if (errno || value < k->least || value > k->most) return false;
-  *(int64_t *)field = value;
+  *(uint64_t *)field = value;
   return true;
 }
 
@@ -80,7 +86,7 @@ static bool read_part(const kind *k, const char **text, bool last, void *field) 
 }
 
 static bool read_push(const kind *k, const char *text, void *field) {
-  static const struct kind place = {.read = read_whole, .most = INT_MAX};
+  static const struct kind place = {.read = read_whole, .most = 2147483647};
   settings *s = field;
   push *p = &s->pushes[s->n_pushes];
   (void)k;
@@ -110,10 +116,10 @@ static const named_value colours[] = {COLOURS(COLOUR_WORD){NULL, 0}};
 
 static bool read_colour(const char *text, unsigned char rgb[3]) {
   static const kind named = {.names = colours};
-  int64_t value = 0;
+  uint64_t value = 0;
   if (*text == '#') {
     if (strlen(text) != 7 || !made_of(text + 1, "0123456789abcdefABCDEF")) return false;
-    value = strtol(text + 1, NULL, 16);
+    value = strtoull(text + 1, NULL, 16);
     if (value == 0) value = 1;
   } else if (!read_whole(&named, text, &value)) {
     return false;
@@ -125,7 +131,7 @@ static bool read_colour(const char *text, unsigned char rgb[3]) {
 static bool read_stripe(const kind *k, const char *text, void *field) {
   msr_style *style = field;
   char rows[24];
-  int64_t n;
+  uint64_t n;
   const size_t length = strcspn(text, ":");
   if (length >= sizeof rows) return false;
   memcpy(rows, text, length);
@@ -141,12 +147,15 @@ static const named_value steps[] = {{"auto", 0}, {"off", 1}, {NULL, 0}};
 
 const kind a_flag = {.read = read_flag};
 const kind a_path = {.wants = "the name of a file", .read = read_path};
+const kind a_directory = {.wants = "the name of a directory, or -", .read = read_path};
 const kind a_real = {.wants = "a number", .read = read_real, .min = -DBL_MAX, .max = DBL_MAX};
 const kind a_positive = {"a number above 0", read_real, .min = DBL_MIN, .max = DBL_MAX};
 const kind a_size = {.wants = "a number, 0 or more", .read = read_real, .max = DBL_MAX};
 const kind a_share = {.wants = "a number from 0 to 1", .read = read_real, .max = 1};
-const kind a_count = {"a whole number, 1 or more", read_whole, .least = 1, .most = INT_MAX};
-const kind a_seed = {"a whole number from 0 to 9223372036854775807", read_whole, .most = INT64_MAX};
+const kind a_count = {"a whole number from 1 to 2147483647", read_whole, .least = 1,
+                      .most = 2147483647};
+const kind a_seed = {"a whole number from 0 to 18446744073709551615", read_whole,
+                     .most = UINT64_MAX};
 const kind a_degree = {.wants = "4 or 8", .read = read_whole, .names = degrees};
 const kind a_border = {.wants = "open or closed", .read = read_whole, .names = borders};
 const kind a_substeps = {"auto, off or a whole number from 1 to 1000000000", read_whole, .least = 1,
@@ -154,8 +163,8 @@ const kind a_substeps = {"auto, off or a whole number from 1 to 1000000000", rea
 const kind an_integrator = {.wants = "auto or a name that 'msr list' shows",
                             .read = read_integrator,
                             .nearest = nearest_integrator};
-const kind a_push = {.wants = "X,Y,FX,FY: a pixel, whole numbers from the top left, and a force",
+const kind a_push = {.wants = "X,Y,FX,FY: a pixel, whole numbers from 0 to 2147483647, and a force",
                      .read = read_push};
 const kind a_stripe = {
-    "N or N:COLOUR: a whole number, 1 or more, and one of " COLOURS(COLOUR_NAME) "or #rrggbb",
-    read_stripe, .least = 1, .most = INT_MAX};
+    "N or N:COLOUR: N from 1 to 2147483647, COLOUR one of " COLOURS(COLOUR_NAME) "or #rrggbb",
+    read_stripe, .least = 1, .most = 2147483647};

@@ -2,6 +2,8 @@
  * between two steps, so that all that was written stays whole. */
 #include "watch.h"
 
+#include "report.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <signal.h>
@@ -21,12 +23,23 @@ static void on_signal(int number) {
   raise(number);
 }
 
+/* With SIGXFSZ ignored, a file that would grow too large is an error of write(2). */
+static const struct answer {
+  int number;
+  void (*handler)(int);
+} answers[] = {{SIGINT, on_signal},
+               {SIGTERM, on_signal},
+               {SIGHUP, on_signal},
+               {SIGPIPE, on_signal},
+               {SIGXFSZ, SIG_IGN}};
+
 /* A signal that the caller had ignored (nohup, a job in the background) stays ignored. */
-static void catch_signal(int number) {
-  struct sigaction old, action = {.sa_handler = on_signal, .sa_flags = SA_RESTART};
-  sigemptyset(&action.sa_mask);
-  if (sigaction(number, NULL, &old) == 0 && old.sa_handler != SIG_IGN) {
-    sigaction(number, &action, NULL);
+static void answer_signals(void) {
+  for (size_t i = 0; i < sizeof answers / sizeof answers[0]; i++) {
+    struct sigaction old, action = {.sa_handler = answers[i].handler, .sa_flags = SA_RESTART};
+    sigemptyset(&action.sa_mask);
+    if (sigaction(answers[i].number, NULL, &old) != 0 || old.sa_handler == SIG_IGN) continue;
+    sigaction(answers[i].number, &action, NULL);
   }
 }
 
@@ -40,9 +53,7 @@ void watch_start(watch *w, const settings *s, const msr_plan *plan) {
   *w = (watch){.s = s, .plan = msr_plan_describe(plan), .started = now()};
   w->shown = w->started;
   w->shows = !s->quiet && isatty(STDERR_FILENO);
-  catch_signal(SIGINT);
-  catch_signal(SIGTERM);
-  catch_signal(SIGPIPE);
+  answer_signals();
 }
 
 static void follow_energy(watch *w, double energy) {
@@ -120,7 +131,18 @@ static void print_energy(const watch *w) {
           fabs(start) > 0 ? " %" : "");
 }
 
-void watch_print_summary(const watch *w) {
+/* The guard lets a run heat much further before it ends it. */
+static void warn_of_heating(const watch *w, double gain) {
+  char text[160];
+  if (!(gain > 0.05)) return;
+  snprintf(text, sizeof text,
+           "energy from nowhere: %.0f %% of what the scene had to give; more substeps conserve it "
+           "better (--substeps %" PRIu64 ")",
+           100 * gain, 4 * w->plan.substeps);
+  tell(w->s, "warning", text);
+}
+
+void watch_print_summary(const watch *w, const msr_state *state) {
   if (w->s->quiet) return;
   fprintf(stderr, "msr: %" PRIu64 " frame%s", w->frames, w->frames == 1 ? "" : "s");
   print_where(w);
@@ -129,4 +151,5 @@ void watch_print_summary(const watch *w) {
   fprintf(stderr, took < 10 ? "%.2g s" : "%.0f s", took);
   if (w->s->verbose) print_energy(w);
   fputs("\n", stderr);
+  warn_of_heating(w, msr_state_energy_gain(state));
 }

@@ -14,7 +14,8 @@ typedef struct watch {
 } watch;
 
 /* Before outputs are opened: from here on a signal ends the run, not msr, so that they are closed.
- * That goes for Ctrl-C and SIGTERM, of which the third ends msr at once, and for SIGPIPE. */
+ * That goes for Ctrl-C, SIGTERM and SIGHUP, of which the third ends msr at once, and for SIGPIPE.
+ */
 void watch_start(watch *w, const settings *s, const msr_plan *plan);
 
 /* To be the last sink: it counts the frames. */
@@ -29,7 +30,7 @@ void watch_end(watch *w);
 /* If nobody reads what msr writes any more, ends it as if SIGPIPE had not been caught. */
 void watch_end_by_pipe(void);
 
-/* One line that says what was done. */
-void watch_print_summary(const watch *w);
+/* One line that says what was done, and a warning if the state came to energy from nowhere. */
+void watch_print_summary(const watch *w, const msr_state *state);
 
 #endif

@@ -16,6 +16,9 @@ const char *msr_status_text(msr_status status) {
   return i < sizeof status_texts / sizeof *status_texts ? status_texts[i] : "unknown status";
 }
 
+static void fill(msr_error *err, msr_status status, const char *format, va_list arguments)
+    MSRI_PRINTF(3, 0);
+
 static void fill(msr_error *err, msr_status status, const char *format, va_list arguments) {
   err->status = status;
   msri_vformat(err->message, sizeof err->message, format, arguments);

@@ -80,10 +80,9 @@ static msr_status explain(msr_plan *plan, bool automatic, msr_error *err) {
   if (f->stable_step == 0) return explain_no_step(plan, err);
   if (automatic && f->substeps > 1)
     return msri_notes_add(&plan->notes, err,
-                          "%llu substeps of %.4g s per iteration: the largest step that is stable "
-                          "at any stretch is %.4g s, of which %g is safe here",
-                          (unsigned long long)f->substeps, f->h, f->stable_step,
-                          f->safe_step / f->stable_step);
+                          "%llu substeps of %.4g s per iteration: steps up to %.4g s are safe here "
+                          "(the largest that is stable at any stretch is %.4g s)",
+                          (unsigned long long)f->substeps, f->h, f->safe_step, f->stable_step);
   if (f->h <= f->safe_step) return MSR_OK;
   return msri_notes_add(&plan->notes, err,
                         "steps of %.4g s are above %.4g s, the largest that is %s: the run may %s; "
