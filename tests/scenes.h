@@ -1,29 +1,11 @@
-/* scenes.h - what the tests of physics share: random numbers, meshes at random or drawn as text,
- * a world to step, and every force of the library by itself with parameters to try it with. */
+/* scenes.h - what the tests of physics share: random numbers, meshes at random, and every force of
+ * the library by itself with parameters to try it with. */
 #ifndef TESTS_SCENES_H
 #define TESTS_SCENES_H
 
-#include "base/base.h"
+#include "art.h"
 
-#include <float.h>
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#define LENGTH(array) (sizeof(array) / sizeof *(array))
-
-/* ---- What must succeed, memory, random numbers */
-
-static msr_error why; /* for every call whose status goes to must() */
-
-static inline void must(msr_status status) {
-  if (status != MSR_OK) fail_msg("%s: %s", msr_status_text(status), why.message);
-}
+/* ---- Memory, random numbers */
 
 static inline void *zeroed(size_t count, size_t size) {
   void *block = calloc(count + 1, size);
@@ -60,7 +42,7 @@ static inline double distance(size_t n, const double *a, const double *b) {
   double most = 0;
   for (size_t i = 0; i < n; i++) {
     const double d = fabs(a[i] - b[i]);
-    if (!(d <= most)) most = isnan(d) ? (double)INFINITY : d;
+    if (!(d <= most)) most = isnan(d) ? INFINITE : d;
   }
   return most;
 }
@@ -71,31 +53,7 @@ static inline double dot(size_t n, const double *a, const double *b) {
   return sum;
 }
 
-/* ---- Worlds: a plan and a state of it */
-
-typedef struct world {
-  msr_plan *plan;
-  msr_state *state;
-} world;
-
-/* Frees the scene. */
-static inline world open_world(msr_scene *scene, const msr_integrator *integrator,
-                               uint64_t substeps) {
-  world w;
-  must(msr_plan_create(scene, &(msr_plan_options){integrator, substeps}, &w.plan, &why));
-  must(msr_state_create(w.plan, &w.state, &why));
-  msr_scene_free(scene);
-  return w;
-}
-
-static inline void close_world(world *w) {
-  msr_state_free(w->state);
-  msr_plan_free(w->plan);
-}
-
-static inline void advance(world *w, uint64_t iterations) {
-  must(msr_state_step(w->state, iterations, &why));
-}
+/* ---- All that moves */
 
 /* z = x, y, vx, vy [4n]. */
 static inline void read_world(const world *w, double *z) {
@@ -104,7 +62,7 @@ static inline void read_world(const world *w, double *z) {
   for (size_t a = 0; a < 4; a++) memcpy(z + a * s.n, from[a], s.n * sizeof *z);
 }
 
-static inline void write_world(world *w, const double *z) {
+static inline void write_world(const world *w, const double *z) {
   const size_t n = msr_plan_describe(w->plan).masses;
   const msr_arrays s = msr_state_edit(w->state);
   double *to[] = {s.x, s.y, s.vx, s.vy};
@@ -113,46 +71,13 @@ static inline void write_world(world *w, const double *z) {
 
 /* ---- Scenes */
 
-static inline msr_scene *empty_scene(double dt) {
-  msr_scene *scene;
-  must(msr_scene_create(&scene, &why));
-  must(msr_scene_set_times(scene, dt, 1, 1, &why));
-  return scene;
-}
-
-static inline void add_mass(msr_scene *scene, double x, double y, double vx, double vy, double m) {
-  must(msr_scene_add_mass(scene, &(msr_mass){x, y, vx, vy, m, {200, 0, 0}}, NULL, &why));
-}
-
-/* Rows of 'r' for a mass, '#' for a support, anything else for air; the scene owns nothing. */
-static inline msr_picture *draw(size_t height, const char *const *rows) {
-  msr_picture *picture;
-  must(msr_picture_create(strlen(rows[0]), height, &picture, &why));
-  for (size_t p = 0; p < picture->width * height; p++) {
-    const char c = rows[p / picture->width][p % picture->width];
-    if (c == 'r') memcpy(picture->rgb + 3 * p, (const unsigned char[]){255, 0, 0}, 3);
-    if (c == '#') memset(picture->rgb + 3 * p, 0, 3);
-  }
-  return picture;
-}
-
-/* Frees the picture. */
-static inline msr_scene *scene_of(msr_picture *picture, const msr_conf *conf,
-                                  const msr_scene_options *options) {
-  msr_scene *scene;
-  must(msr_scene_from_picture("test", picture, conf, options, &scene, &why));
-  msr_picture_free(picture);
-  return scene;
-}
-
 /* A full rectangle of masses in free space. */
 static inline msr_scene *lattice(size_t width, size_t height, int neighbours,
                                  const msr_conf *conf) {
   msr_picture *picture;
   must(msr_picture_create(width, height, &picture, &why));
-  for (size_t p = 0; p < width * height; p++)
-    memcpy(picture->rgb + 3 * p, (const unsigned char[]){255, 0, 0}, 3);
-  return scene_of(picture, conf, &(msr_scene_options){.neighbours = neighbours});
+  for (size_t p = 0; p < width * height; p++) memcpy(picture->rgb + 3 * p, rgb_of('o'), 3);
+  return scene_from(picture, conf, &(msr_scene_options){.neighbours = neighbours});
 }
 
 /* A spring, as a test remembers it. */

@@ -1,40 +1,14 @@
 /* test_contact.c - supports: whatever its speed, a mass is never in a support and never passes one;
  * it comes back with the restitution and friction asked for; and it neither heats nor sinks. */
+#include "art.h"
+
+#include "base/pixel.h"
 #include "contacts/contact.h"
 #include "plan/state.h"
 
-#include "base/pixel.h"
+#define PI 3.14159265358979323846
 
-#include <float.h>
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#define LENGTH(array) (sizeof(array) / sizeof *(array))
-#define NO_NUMBER     ((double)NAN)
-#define INFINITE      ((double)INFINITY)
-#define PI            3.14159265358979323846
-
-/* ---- A picture in letters, its supports, and shots at them */
-
-/* '.' air, '#' support, 'o' mass; each row ends in a line feed. */
-static msr_picture *paint(const char *art) {
-  const size_t width = strcspn(art, "\n"), height = strlen(art) / (width + 1);
-  msr_picture *picture;
-  assert_int_equal(msr_picture_create(width, height, &picture, NULL), MSR_OK);
-  for (size_t p = 0; p < width * height; p++) {
-    const char letter = art[p + p / width];
-    unsigned char *rgb = picture->rgb + 3 * p;
-    if (letter != '.') rgb[1] = rgb[2] = 0;
-    if (letter == '#') rgb[0] = 0;
-  }
-  return picture;
-}
+/* ---- Supports, and shots at them */
 
 static uint64_t random_state;
 
@@ -206,7 +180,7 @@ static void no_speed_passes_a_wall(void **unused) {
 static msr_picture *random_picture(void) {
   msr_picture *picture;
   const size_t width = 1 + draw(MOST_SIDE), height = 1 + draw(MOST_SIDE), share = 1 + draw(60);
-  assert_int_equal(msr_picture_create(width, height, &picture, NULL), MSR_OK);
+  must(msr_picture_create(width, height, &picture, &why));
   for (size_t p = 0; p < width * height; p++)
     if (draw(100) < share) memset(picture->rgb + 3 * p, 0, 3);
   return picture;
@@ -450,11 +424,6 @@ static void survives_what_is_no_number(void **unused) {
 
 /* ---- In a simulation */
 
-typedef struct simulation {
-  msr_plan *plan;
-  msr_state *state;
-} simulation;
-
 typedef struct setting {
   const char *art;
   msr_conf conf;
@@ -462,35 +431,11 @@ typedef struct setting {
   double restitution, friction, damping;
 } setting;
 
-static msr_scene *build(const setting *s) {
-  msr_picture *picture = paint(s->art);
-  msr_scene *scene;
-  assert_int_equal(msr_scene_from_picture("art", picture, &s->conf, &s->options, &scene, NULL),
-                   MSR_OK);
-  msr_picture_free(picture);
-  assert_int_equal(msr_scene_set_contact(scene, s->restitution, s->friction, NULL), MSR_OK);
-  if (s->damping > 0)
-    assert_int_equal(
-        msr_scene_add_force(scene, &msr_force_damping, &(msr_damping){s->damping}, NULL), MSR_OK);
-  return scene;
-}
-
-static simulation simulate(msr_scene *scene, const msr_plan_options *options) {
-  simulation sim;
-  assert_int_equal(msr_plan_create(scene, options, &sim.plan, NULL), MSR_OK);
-  assert_int_equal(msr_state_create(sim.plan, &sim.state, NULL), MSR_OK);
-  msr_scene_free(scene);
-  return sim;
-}
-
-static void end(simulation *sim) {
-  msr_state_free(sim->state);
-  msr_plan_free(sim->plan);
-}
-
-static void step(simulation *sim, uint64_t iterations) {
-  msr_error err = {.message = ""};
-  if (msr_state_step(sim->state, iterations, &err) != MSR_OK) fail_msg("%s", err.message);
+static world build(const setting *s, const msr_integrator *integrator) {
+  msr_scene *scene = scene_of(s->art, &s->conf, &s->options);
+  must(msr_scene_set_contact(scene, s->restitution, s->friction, &why));
+  if (s->damping > 0) add_force(scene, &msr_force_damping, &(msr_damping){s->damping});
+  return open_world(scene, integrator, 0);
 }
 
 #define DROP                                                                                       \
@@ -510,17 +455,17 @@ static const msr_conf usual = {0.005, 9.8, 0.1, 1500, 1, 1};
 static void bounces_keep_their_energy(void **unused) {
   (void)unused;
   const setting s = {DROP, usual, {0}, 1, 0, 0};
-  simulation sim = simulate(build(&s), NULL);
-  const double start = msr_state_energy(sim.state).total;
+  world w = build(&s, NULL);
+  const double start = msr_state_energy(w.state).total;
   const double scale = 8 * 0.1 * 9.8 * 4; // what falling 4 px gives 8 masses
   double worst = 0;
   for (int i = 0; i < 200; i++) {
-    step(&sim, 200);
-    worst = fmax(worst, fabs(msr_state_energy(sim.state).total - start));
+    advance(&w, 200);
+    worst = fmax(worst, fabs(msr_state_energy(w.state).total - start));
   }
-  assert_true(msr_state_contacts(sim.state) > 100);
+  assert_true(msr_state_contacts(w.state) > 100);
   if (worst > 0.05 * scale) fail_msg("the energy went %g %% astray", 100 * worst / scale);
-  end(&sim);
+  close_world(w);
 }
 
 /* A mass alone bounces for ever to the height that it fell from: each bounce moves it by at most
@@ -528,34 +473,34 @@ static void bounces_keep_their_energy(void **unused) {
 static void a_mass_alone_bounces_for_ever(void **unused) {
   (void)unused;
   const setting s = {".\no\n.\n.\n.\n.\n#\n", usual, {0}, 1, 0, 0};
-  simulation sim = simulate(build(&s), NULL);
+  world w = build(&s, NULL);
   double highest = 0, lowest = 7;
   for (int i = 0; i < 10000; i++) {
-    step(&sim, 1);
-    const double y = msr_state_view(sim.state).y[0];
+    advance(&w, 1);
+    const double y = msr_state_view(w.state).y[0];
     highest = fmax(highest, y), lowest = fmin(lowest, y);
   }
   const double fall = 4.5, way = sqrt(2 * 9.8 * fall) * 0.005;
   assert_true(lowest >= 1 && lowest < 1 + way);
   assert_true(fabs(highest - 5.5) < 2 * way);
-  assert_in_range(msr_state_contacts(sim.state), 20, 40); // 50 s of 1.92 s each
-  end(&sim);
+  assert_in_range(msr_state_contacts(w.state), 20, 40); // 50 s of 1.92 s each
+  close_world(w);
 }
 
 /* Without restitution, and with damping along and across, a block lies down and stays. */
 static void a_damped_block_comes_to_rest(void **unused) {
   (void)unused;
   const setting s = {DROP, usual, {.neighbours = 8}, 0, 0.5, 0.5};
-  simulation sim = simulate(build(&s), NULL);
-  step(&sim, 6000);
+  world w = build(&s, NULL);
+  advance(&w, 6000);
   double before[16];
-  memcpy(before, msr_state_view(sim.state).x, sizeof before);
-  step(&sim, 2000);
-  const double *now = msr_state_view(sim.state).x;
+  memcpy(before, msr_state_view(w.state).x, sizeof before);
+  advance(&w, 2000);
+  const double *now = msr_state_view(w.state).x;
   for (int i = 0; i < 16; i++) assert_true(fabs(now[i] - before[i]) < 1e-6);
   // at rest a step of gravity alone is under way: v = g h at most
-  assert_true(msr_state_energy(sim.state).kinetic < 8 * 0.1 * pow(9.8 * 0.005, 2));
-  end(&sim);
+  assert_true(msr_state_energy(w.state).kinetic < 8 * 0.1 * pow(9.8 * 0.005, 2));
+  close_world(w);
 }
 
 /* What a method drifts by is its own affair: none may end in a support. */
@@ -576,17 +521,17 @@ static void every_integrator_stays_outside(void **unused) {
   msr_picture *picture = paint(s.art);
   find_regions(picture, false, &r);
   for (const msr_integrator *const *i = msr_integrators; *i; i++) {
-    simulation sim = simulate(build(&s), &(msr_plan_options){.integrator = *i});
+    world w = build(&s, *i);
     for (int n = 0; n < 1000; n++) {
-      const msr_status status = msr_state_step(sim.state, 1, NULL);
+      const msr_status status = msr_state_step(w.state, 1, NULL);
       if (status == MSR_EUNSTABLE && (*i)->stability == 0) break;
       assert_int_equal(status, MSR_OK);
-      const msr_view view = msr_state_view(sim.state);
+      const msr_view view = msr_state_view(w.state);
       for (size_t k = 0; k < view.n; k++)
         assert_true(region_at(&r, (const double[2]){view.x[k], view.y[k]}) > 0);
     }
-    assert_true(msr_state_contacts(sim.state) > 0);
-    end(&sim);
+    assert_true(msr_state_contacts(w.state) > 0);
+    close_world(w);
   }
   msr_picture_free(picture);
 }
@@ -595,13 +540,13 @@ static void every_integrator_stays_outside(void **unused) {
 static void supports_beside_the_border(void **unused) {
   (void)unused;
   const setting s = {"#.o.#\n", {0.005, 0, 0.1, 0, 1, 1}, {.closed_border = true}, 1, 0, 0};
-  simulation sim = simulate(build(&s), NULL);
-  msr_state_edit(sim.state).vx[0] = 1000;
-  step(&sim, 1000);
-  const msr_view view = msr_state_view(sim.state);
+  world w = build(&s, NULL);
+  msr_state_edit(w.state).vx[0] = 1000;
+  advance(&w, 1000);
+  const msr_view view = msr_state_view(w.state);
   assert_true(view.x[0] >= 1 && view.x[0] < 4 && view.y[0] == 0.5);
   assert_true(fabs(view.vx[0]) == 1000);
-  end(&sim);
+  close_world(w);
 }
 
 /* No black pixel and an open border: nothing of contacts is there to be called. */
@@ -616,10 +561,10 @@ static void absent_contacts_leave_no_code(void **unused) {
   };
   for (size_t i = 0; i < LENGTH(rows); i++) {
     const setting s = {rows[i].art, usual, {.closed_border = rows[i].closed}, 1, 0, 0};
-    simulation sim = simulate(build(&s), NULL);
-    assert_int_equal(sim.plan->contact.move != NULL, rows[i].any);
-    assert_int_equal(msri_state_system(sim.state).drift != NULL, rows[i].any);
-    end(&sim);
+    world w = build(&s, NULL);
+    assert_int_equal(w.plan->contact.move != NULL, rows[i].any);
+    assert_int_equal(msri_state_system(w.state).drift != NULL, rows[i].any);
+    close_world(w);
   }
 }
 

@@ -1,19 +1,9 @@
 /* test_effects.c - effects are paid for only when called for: what is off is never run and changes
  * no bit, what is on says why, and a force of one's own is treated as the library's are.
  * link: --wrap=gsl_rng_set */
-#include "msr.h"
+#include "art.h"
 
 #include <gsl/gsl_rng.h>
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#define LENGTH(array) (sizeof(array) / sizeof *(array))
 
 /* ---- Random numbers that were asked for */
 
@@ -29,84 +19,44 @@ void __wrap_gsl_rng_set(const gsl_rng *rng, unsigned long seed) {
 
 /* ---- Scenes */
 
-/* '.' air, '#' support, 'o' mass; each row ends in a line feed. */
-static msr_picture *paint(const char *art) {
-  const size_t width = strcspn(art, "\n"), height = strlen(art) / (width + 1);
-  msr_picture *picture;
-  assert_int_equal(msr_picture_create(width, height, &picture, NULL), MSR_OK);
-  for (size_t p = 0; p < width * height; p++) {
-    const char letter = art[p + p / width];
-    unsigned char *rgb = picture->rgb + 3 * p;
-    if (letter != '.') rgb[1] = rgb[2] = 0;
-    if (letter == '#') rgb[0] = 0;
-  }
-  return picture;
-}
-
 static const char block[] = "........\n..ooo...\n..ooo...\n........\n........\n........\n";
 static const char block_on_floor[] = "........\n..ooo...\n..ooo...\n........\n........\n########\n";
 /* The step is small enough for explicit Euler not to explode within the run. */
 static const msr_conf still = {
     .dt = 0.0005, .mass = 0.1, .stiffness = 1500, .iterations = 1, .images = 1};
 
-static msr_scene *scene_of(const char *art, msr_conf conf, bool closed) {
-  const msr_scene_options options = {.closed_border = closed};
-  msr_picture *picture = paint(art);
-  msr_scene *scene;
-  assert_int_equal(msr_scene_from_picture("art", picture, &conf, &options, &scene, NULL), MSR_OK);
-  msr_picture_free(picture);
-  return scene;
-}
+static const msr_scene_options closed_border = {.closed_border = true};
 
 static msr_scene *with(msr_scene *scene, const msr_force *force, const void *params) {
-  assert_int_equal(msr_scene_add_force(scene, force, params, NULL), MSR_OK);
+  add_force(scene, force, params);
   return scene;
 }
 
 /* The block's masses without a picture: a scene that never had springs. */
 static msr_scene *loose_masses(void) {
-  msr_scene *scene;
-  assert_int_equal(msr_scene_create(&scene, NULL), MSR_OK);
-  assert_int_equal(msr_scene_set_times(scene, still.dt, 1, 1, NULL), MSR_OK);
-  for (int i = 0; i < 6; i++) {
-    const msr_mass mass = {.x = 2.5 + i % 3, .y = 4.5 - i / 3, .m = 0.1};
-    assert_int_equal(msr_scene_add_mass(scene, &mass, NULL, NULL), MSR_OK);
-  }
+  msr_scene *scene = empty_scene(still.dt);
+  for (int i = 0; i < 6; i++) add_mass(scene, 2.5 + i % 3, 4.5 - i / 3, 0, 0, 0.1);
   return scene;
 }
 
 /* ---- Runs */
 
-typedef struct run {
-  msr_plan *plan;
-  msr_state *state;
-} run;
-
 enum { ITERATIONS = 40 };
 
 /* Throws the block by hand and steps; the scene is freed. */
-static run run_of(msr_scene *scene, const msr_integrator *integrator) {
-  run r;
-  const msr_plan_options options = {.integrator = integrator, .substeps = 1};
-  assert_int_equal(msr_plan_create(scene, &options, &r.plan, NULL), MSR_OK);
-  msr_scene_free(scene);
-  assert_int_equal(msr_state_create(r.plan, &r.state, NULL), MSR_OK);
+static world run_of(msr_scene *scene, const msr_integrator *integrator) {
+  const world r = open_world(scene, integrator, 1);
   const msr_arrays a = msr_state_edit(r.state);
   for (size_t i = 0; i < msr_plan_describe(r.plan).masses; i++) {
     a.vx[i] = 1 + (double)i / 8;
     a.vy[i] = (double)i / 4 - 0.5;
   }
-  assert_int_equal(msr_state_step(r.state, ITERATIONS, NULL), MSR_OK);
+  advance(&r, ITERATIONS);
   return r;
 }
 
-static void end(run r) {
-  msr_state_free(r.state);
-  msr_plan_free(r.plan);
-}
-
 /* The effect of that name: its number, or that of all effects. */
-static size_t find(const run *r, const char *name, const msr_effect **effect) {
+static size_t find(const world *r, const char *name, const msr_effect **effect) {
   size_t n, e = 0;
   const msr_effect *all = msr_plan_effects(r->plan, &n);
   while (e < n && strcmp(all[e].name, name) != 0) e++;
@@ -114,7 +64,7 @@ static size_t find(const run *r, const char *name, const msr_effect **effect) {
   return e;
 }
 
-static void assert_effect(const run *r, const char *name, bool on) {
+static void assert_effect(const world *r, const char *name, bool on) {
   const msr_effect *effect;
   const size_t e = find(r, name, &effect);
   assert_non_null(effect);
@@ -125,22 +75,22 @@ static void assert_effect(const run *r, const char *name, bool on) {
 
 /* ---- What each effect needs to be on, to be off, and never to have been there */
 
-static msr_scene *plain(void) { return scene_of(block, still, false); }
+static msr_scene *plain(void) { return scene_of(block, &still, NULL); }
 
 static msr_scene *no_stiffness(void) {
   msr_conf slack = still;
   slack.stiffness = 0;
-  return scene_of(block, slack, false);
+  return scene_of(block, &slack, NULL);
 }
 
 static msr_scene *in_gravity(void) {
   msr_conf heavy = still;
   heavy.gravity = 9.8;
-  return scene_of(block, heavy, false);
+  return scene_of(block, &heavy, NULL);
 }
 
-static msr_scene *on_floor(void) { return scene_of(block_on_floor, still, false); }
-static msr_scene *closed(void) { return scene_of(block, still, true); }
+static msr_scene *on_floor(void) { return scene_of(block_on_floor, &still, NULL); }
+static msr_scene *closed(void) { return scene_of(block, &still, &closed_border); }
 static msr_scene *no_gravity(void) { return with(plain(), &msr_force_gravity, &(msr_gravity){0}); }
 static msr_scene *drag(void) { return with(plain(), &msr_force_drag, &(msr_drag){0.1}); }
 static msr_scene *no_drag(void) { return with(plain(), &msr_force_drag, &(msr_drag){0}); }
@@ -175,23 +125,23 @@ static void every_effect_is_tested(void **unused) {
     while (i < LENGTH(rows) && strcmp(rows[i].name, (*f)->name) != 0) i++;
     if (i == LENGTH(rows)) fail_msg("%s has no row in this test", (*f)->name);
   }
-  const run r = run_of(plain(), NULL);
+  const world r = run_of(plain(), NULL);
   size_t n;
   msr_plan_effects(r.plan, &n);
   assert_int_equal(n, LENGTH(rows));
-  end(r);
+  close_world(r);
 }
 
 static void what_is_off_changes_no_bit(void **unused) {
   (void)unused;
   for (const msr_integrator *const *i = msr_integrators; *i; i++)
     for (size_t e = 0; e < LENGTH(rows); e++) {
-      const run off = run_of(rows[e].off(), *i), never = run_of(rows[e].never(), *i);
+      const world off = run_of(rows[e].off(), *i), never = run_of(rows[e].never(), *i);
       assert_effect(&off, rows[e].name, false);
       assert_effect(&never, rows[e].name, false);
       assert_true(msr_state_hash(off.state) == msr_state_hash(never.state));
-      end(off);
-      end(never);
+      close_world(off);
+      close_world(never);
     }
 }
 
@@ -199,9 +149,9 @@ static void what_is_on_is_called(void **unused) {
   (void)unused;
   for (const msr_integrator *const *i = msr_integrators; *i; i++)
     for (size_t e = 0; e < LENGTH(rows); e++) {
-      const run on = run_of(rows[e].on(), *i);
+      const world on = run_of(rows[e].on(), *i);
       assert_effect(&on, rows[e].name, true);
-      end(on);
+      close_world(on);
     }
 }
 
@@ -209,58 +159,58 @@ static void what_is_on_is_called(void **unused) {
 static void what_is_on_acts(void **unused) {
   (void)unused;
   for (size_t e = 0; e < LENGTH(rows); e++) {
-    const run on = run_of(rows[e].on(), NULL), never = run_of(rows[e].never(), NULL);
+    const world on = run_of(rows[e].on(), NULL), never = run_of(rows[e].never(), NULL);
     const msr_effect *effect;
     find(&on, rows[e].name, &effect);
     const bool same = msr_state_hash(on.state) == msr_state_hash(never.state);
     assert_int_equal(same, effect->force == NULL);
     assert_int_equal(msr_state_contacts(on.state), 0);
-    end(on);
-    end(never);
+    close_world(on);
+    close_world(never);
   }
 }
 
 /* Once it is under way, Verlet takes one evaluation per step: no effect is called more often. */
 static void calls_are_as_few_as_can_be(void **unused) {
   (void)unused;
-  const run r = run_of(in_gravity(), &msr_integrator_verlet);
+  const world r = run_of(in_gravity(), &msr_integrator_verlet);
   const char *const names[] = {"springs", "gravity"};
   for (int i = 0; i < 2; i++) {
     const msr_effect *effect;
     const size_t e = find(&r, names[i], &effect);
     const uint64_t before = msr_state_calls(r.state, e);
-    assert_int_equal(msr_state_step(r.state, ITERATIONS, NULL), MSR_OK);
+    must(msr_state_step(r.state, ITERATIONS, &why));
     assert_int_equal(msr_state_calls(r.state, e) - before, ITERATIONS);
   }
   assert_int_equal(msr_state_calls(r.state, 1000), 0);
-  end(r);
+  close_world(r);
 }
 
 static void no_random_number_without_gusts(void **unused) {
   (void)unused;
   static const msr_wind steady = {.speed = 3, .seed = 7}, gusty = {.gust = 1, .seed = 7};
   seedings = 0;
-  end(run_of(plain(), NULL));
+  close_world(run_of(plain(), NULL));
   assert_int_equal(seedings, 0);
-  end(run_of(with(plain(), &msr_force_wind, &steady), NULL));
+  close_world(run_of(with(plain(), &msr_force_wind, &steady), NULL));
   assert_int_equal(seedings, 0);
-  end(run_of(with(plain(), &msr_force_wind, &gusty), NULL));
+  close_world(run_of(with(plain(), &msr_force_wind, &gusty), NULL));
   assert_true(seedings > 0);
 }
 
 /* Nothing moves: nothing is on. */
 static void without_masses_all_is_off(void **unused) {
   (void)unused;
-  msr_scene *scene = scene_of(".#.\n", still, true);
+  msr_scene *scene = scene_of(".#.\n", &still, &closed_border);
   with(scene, &msr_force_gravity, &(msr_gravity){9.8});
   with(scene, &msr_force_drag, &(msr_drag){1});
   with(scene, &msr_force_damping, &(msr_damping){1});
   with(scene, &msr_force_wind, &(msr_wind){.speed = 1, .gust = 1});
-  const run r = run_of(scene, NULL);
+  const world r = run_of(scene, NULL);
   size_t n;
   const msr_effect *effects = msr_plan_effects(r.plan, &n);
   for (size_t e = 0; e < n; e++) assert_effect(&r, effects[e].name, false);
-  end(r);
+  close_world(r);
 }
 
 /* ---- Order and reasons */
@@ -269,13 +219,13 @@ static void effects_are_in_the_order_in_which_they_act(void **unused) {
   (void)unused;
   static const char *const due[] = {"springs",  "push",   "drag", "push",    "wind",
                                     "supports", "border", "drag", "gravity", "damping"};
-  msr_scene *scene = scene_of(block_on_floor, still, true);
+  msr_scene *scene = scene_of(block_on_floor, &still, &closed_border);
   with(scene, &msr_force_push, &(msr_push){0, 1, 1});
   with(scene, &msr_force_drag, &(msr_drag){0.1});
   with(scene, &msr_force_drag, &(msr_drag){0});
   with(scene, &msr_force_push, &(msr_push){0, 2, 2});
   with(scene, &msr_force_wind, &(msr_wind){.speed = 1});
-  const run r = run_of(scene, NULL);
+  const world r = run_of(scene, NULL);
   size_t n;
   const msr_effect *effects = msr_plan_effects(r.plan, &n);
   assert_int_equal(n, LENGTH(due));
@@ -284,7 +234,7 @@ static void effects_are_in_the_order_in_which_they_act(void **unused) {
     assert_int_equal(effects[e].on, e < 7);
     assert_int_equal(effects[e].force == NULL, e == 5 || e == 6);
   }
-  end(r);
+  close_world(r);
 }
 
 static void reasons_say_what_is_meant(void **unused) {
@@ -313,11 +263,11 @@ static void reasons_say_what_is_meant(void **unused) {
       {plain, "border", "it is open"},
   };
   for (size_t i = 0; i < LENGTH(cases); i++) {
-    const run r = run_of(cases[i].scene(), NULL);
+    const world r = run_of(cases[i].scene(), NULL);
     const msr_effect *effect;
     find(&r, cases[i].name, &effect);
     assert_string_equal(effect->reason, cases[i].reason);
-    end(r);
+    close_world(r);
   }
 }
 
@@ -336,10 +286,10 @@ static msr_status my_check(const void *params, msr_error *err) {
   return ((const mine *)params)->of_check;
 }
 
-static bool my_idle(const void *params, const msr_view *s, char *why, size_t size) {
+static bool my_idle(const void *params, const msr_view *s, char *reason, size_t size) {
   const mine *p = params;
   assert_true(s->t == 0 && size > 8 && s->vx != NULL);
-  if (p->idle) memcpy(why, "of rest", sizeof "of rest");
+  if (p->idle) memcpy(reason, "of rest", sizeof "of rest");
   return p->idle;
 }
 
@@ -404,24 +354,24 @@ static mine counting(double c) {
 static void my_force_is_treated_as_built_in(void **unused) {
   (void)unused;
   const mine params = counting(0.1);
-  const run r = run_of(with(plain(), &without_flow, &params), NULL);
+  const world r = run_of(with(plain(), &without_flow, &params), NULL);
   const msr_effect *effect;
   const size_t e = find(&r, "mine", &effect);
   assert_true(effect->on && effect->force == &without_flow);
   assert_string_equal(effect->reason, "asked for");
   assert_int_equal(prepares, 1);
   // drag by the midpoint rule is within (c h / 2 m)^3 / 6 of drag by its own flow, step by step
-  const run built_in = run_of(drag(), NULL);
+  const world built_in = run_of(drag(), NULL);
   const msr_view a = msr_state_view(r.state), b = msr_state_view(built_in.state);
   for (size_t i = 0; i < a.n; i++) assert_true(fabs(a.vx[i] - b.vx[i]) < 1e-6);
   assert_false(msr_state_hash(r.state) == msr_state_hash(built_in.state));
-  end(built_in);
+  close_world(built_in);
   const uint64_t before = msr_state_calls(r.state, e);
   adds = 0;
-  assert_int_equal(msr_state_step(r.state, ITERATIONS, NULL), MSR_OK);
+  must(msr_state_step(r.state, ITERATIONS, &why));
   assert_int_equal(msr_state_calls(r.state, e) - before, 2 * ITERATIONS); // half a step at each end
   assert_int_equal(adds, 2 * 2 * ITERATIONS); // two by the midpoint rule
-  end(r);
+  close_world(r);
   assert_int_equal(releases, 1);
 }
 
@@ -429,12 +379,12 @@ static void my_flow_takes_the_place_of_add(void **unused) {
   (void)unused;
   const mine params = counting(0.1);
   for (int i = 0; i < 2; i++) {
-    const run r = run_of(with(plain(), &with_flow, &params), i ? &msr_integrator_rk4 : NULL);
+    const world r = run_of(with(plain(), &with_flow, &params), i ? &msr_integrator_rk4 : NULL);
     adds = flows = 0;
-    assert_int_equal(msr_state_step(r.state, ITERATIONS, NULL), MSR_OK);
+    must(msr_state_step(r.state, ITERATIONS, &why));
     assert_int_equal(adds, i ? 4 * ITERATIONS : 0); // rk4 takes it through a
     assert_int_equal(flows, i ? 0 : 2 * ITERATIONS);
-    end(r);
+    close_world(r);
   }
 }
 
@@ -446,7 +396,7 @@ static void my_forces_have_scratch_of_their_own(void **unused) {
     mine first = counting(0.1), second = first;
     first.uses = &uses[0], second.uses = &uses[1];
     second.c = 0.2;
-    end(run_of(with(with(plain(), &without_flow, &first), &without_flow, &second), NULL));
+    close_world(run_of(with(with(plain(), &without_flow, &first), &without_flow, &second), NULL));
     assert_true(uses[0] > 0 && uses[1] > 0);
   }
 }
@@ -455,7 +405,8 @@ static void my_idle_force_costs_nothing(void **unused) {
   (void)unused;
   mine params = counting(0.1);
   params.idle = true;
-  const run r = run_of(with(plain(), &without_flow, &params), NULL), never = run_of(plain(), NULL);
+  const world r = run_of(with(plain(), &without_flow, &params), NULL),
+              never = run_of(plain(), NULL);
   const msr_effect *effect;
   find(&r, "mine", &effect);
   assert_false(effect->on);
@@ -463,8 +414,8 @@ static void my_idle_force_costs_nothing(void **unused) {
   assert_true(msr_state_hash(r.state) == msr_state_hash(never.state));
   assert_true(msr_plan_describe(r.plan).state_bytes <=
               msr_plan_describe(never.plan).state_bytes + 64); // a count of calls
-  end(r);
-  end(never);
+  close_world(r);
+  close_world(never);
   assert_int_equal(adds + flows + prepares + releases, 0);
 }
 
@@ -472,7 +423,7 @@ static void my_idle_force_costs_nothing(void **unused) {
 static void my_status_comes_back(void **unused) {
   (void)unused;
   const msr_status odd = MSR_EINTR;
-  msr_error err;
+  msr_error err = {.message = ""};
   msr_plan *plan = NULL;
   msr_state *state;
   mine params = counting(0.1);
@@ -480,12 +431,15 @@ static void my_status_comes_back(void **unused) {
   params.of_check = odd;
   msr_scene *scene = plain();
   assert_int_equal(msr_scene_add_force(scene, &without_flow, &params, &err), odd);
+  assert_string_equal(err.message, "force mine: interrupted"); // it said nothing
   params.of_check = MSR_OK;
   msr_scene_free(scene);
 
   params.of_prepare = odd;
+  err.message[0] = 0;
   scene = with(plain(), &without_flow, &params);
   assert_int_equal(msr_plan_create(scene, NULL, &plan, &err), odd);
+  assert_string_equal(err.message, "force mine: interrupted");
   assert_null(plan);
   assert_int_equal(prepares, 1);
   msr_scene_free(scene);
@@ -529,21 +483,41 @@ static void my_driving_force_is_followed(void **unused) {
                                     .scratch_size = sizeof(uint64_t),
                                     .add = my_add};
   mine params = counting(-1);
-  const run r = run_of(with(plain(), &driving, &params), NULL);
+  const world r = run_of(with(plain(), &driving, &params), NULL);
   const int before = adds;
-  assert_int_equal(msr_state_step(r.state, 10, NULL), MSR_OK);
+  must(msr_state_step(r.state, 10, &why));
   assert_true(adds >= before + 10 * 5); // two midpoint steps of two calls each, and the guard's
-  end(r);
+  close_world(r);
   params.of_add = MSR_EIO;
-  msr_scene *scene = with(plain(), &driving, &params);
-  run failing;
-  assert_int_equal(msr_plan_create(scene, NULL, &failing.plan, NULL), MSR_OK);
-  assert_int_equal(msr_state_create(failing.plan, &failing.state, NULL), MSR_OK);
+  const world failing = open_world(with(plain(), &driving, &params), NULL, 0);
   msr_error err;
   assert_int_equal(msr_state_step(failing.state, 1, &err), MSR_EIO);
   assert_string_equal(err.message, "iteration 0: driving: input or output failed");
-  msr_scene_free(scene);
-  end(failing);
+  close_world(failing);
+}
+
+static msr_status add_sway(const void *self, void *scratch, const msr_view *s, double *fx,
+                           double *fy) {
+  (void)self, (void)scratch, (void)fy;
+  for (size_t i = 0; i < s->n; i++) fx[i] += cos(30 * s->t);
+  return MSR_OK;
+}
+
+/* Verlet begins with one evaluation. What the guard and a program ask for isn't counted. */
+static void only_calls_to_step_are_counted(void **unused) {
+  (void)unused;
+  static const msr_force swaying = {
+      .name = "swaying", .summary = "F = cos(30 t)", .uses_time = true, .add = add_sway};
+  const world w = open_world(with(in_gravity(), &swaying, NULL), NULL, 1);
+  double fx[6], fy[6];
+  for (uint64_t steps = 0; steps <= 70; steps += 35) { // the guard looks at 32 and 64
+    must(msr_state_check(w.state, &why));
+    must(msr_state_forces(w.state, fx, fy, &why));
+    for (size_t e = 0; e < 3; e++)
+      assert_int_equal(msr_state_calls(w.state, e), steps > 0 ? steps + 1 : 0);
+    advance(&w, 35);
+  }
+  close_world(w);
 }
 
 int main(void) {
@@ -563,6 +537,7 @@ int main(void) {
       cmocka_unit_test(my_idle_force_costs_nothing),
       cmocka_unit_test(my_status_comes_back),
       cmocka_unit_test(my_driving_force_is_followed),
+      cmocka_unit_test(only_calls_to_step_are_counted),
   };
   return cmocka_run_group_tests_name("effects", tests, NULL, NULL);
 }

@@ -52,7 +52,7 @@ static void check_no_trend(const msr_integrator *integrator) {
   const double last = worst_energy(&w, e0, 10000);
   if (!(first < 0.1 && last < 2.5 * first))
     fail_msg("%s: energy off by %g, then %g", integrator->name, first, last);
-  close_world(&w);
+  close_world(w);
 }
 
 /* Any other has a trend: at twice the time, at least 1.5 times the error. */
@@ -62,7 +62,7 @@ static void check_trend(const msr_integrator *integrator) {
   const double second = worst_energy(&w, e0, 100);
   if (!(second > 1.5 * first))
     fail_msg("%s: energy off by %g, then %g", integrator->name, first, second);
-  close_world(&w);
+  close_world(w);
 }
 
 static void energy_has_no_trend_if_symplectic(void **state) {
@@ -80,7 +80,7 @@ static void energy_errors_fall_with_the_order(void **state) {
     for (int half = 0; half < 2; half++) {
       world w = going(*i, half ? 0.0005 : 0.001);
       error[half] = worst_energy(&w, total(&w), half ? 1200 : 600);
-      close_world(&w);
+      close_world(w);
     }
     const double order = log2(error[0] / error[1]), declared = (*i)->order;
     if (!(order > declared - 0.2 && (order < declared + 0.2 || !(*i)->symplectic)))
@@ -121,7 +121,7 @@ static void momentum_is_kept(void **state) {
     assert_true(fabs(after.py - before.py) < rounding);
     if ((*i)->symplectic && !(fabs(after.angular - before.angular) < 15 * rounding))
       fail_msg("%s: angular momentum off by %g", (*i)->name, after.angular - before.angular);
-    close_world(&w);
+    close_world(w);
   }
 }
 
@@ -129,7 +129,7 @@ static void momentum_is_kept(void **state) {
 static void damping_keeps_momentum(void **state) {
   (void)state;
   msr_scene *scene = free_lattice(0.01);
-  must(msr_scene_add_force(scene, &msr_force_damping, &(msr_damping){0.5}, &why));
+  add_force(scene, &msr_force_damping, &(msr_damping){0.5});
   world w = open_world(scene, NULL, 1);
   set_going(&w);
   const momenta before = momenta_of(w.state);
@@ -139,7 +139,7 @@ static void damping_keeps_momentum(void **state) {
   assert_true(fabs(after.px - before.px) < rounding && fabs(after.py - before.py) < rounding);
   assert_true(fabs(after.angular - before.angular) < 15 * rounding);
   assert_true(total(&w) < e0 - 0.05);
-  close_world(&w);
+  close_world(w);
 }
 
 /* ---- Work */
@@ -148,8 +148,8 @@ static void damping_keeps_momentum(void **state) {
 static double work_error(const msr_force *force, double dt, double *work) {
   double f[2 * MASSES];
   msr_scene *scene = free_lattice(dt);
-  must(msr_scene_add_force(scene, &msr_force_gravity, &(msr_gravity){9.8}, &why));
-  must(msr_scene_add_force(scene, force, trial_params(force), &why));
+  add_force(scene, &msr_force_gravity, &(msr_gravity){9.8});
+  add_force(scene, force, trial_params(force));
   world w = open_world(scene, NULL, 1);
   set_going(&w);
   const msr_view start = msr_state_view(w.state);
@@ -165,7 +165,7 @@ static double work_error(const msr_force *force, double dt, double *work) {
   }
   const double error = total(&w) - e0 - *work;
   dismiss(&a);
-  close_world(&w);
+  close_world(w);
   return error;
 }
 
@@ -227,11 +227,11 @@ static void energy_counts_every_potential(void **state) {
   (void)state;
   const double g = 4, fx = 3, fy = 2;
   msr_scene *scene = free_lattice(0.002);
-  must(msr_scene_add_force(scene, &msr_force_gravity, &(msr_gravity){g}, &why));
-  must(msr_scene_add_force(scene, &msr_force_push, &(msr_push){5, fx, fy}, &why));
-  must(msr_scene_add_force(scene, &well, NULL, &why));
+  add_force(scene, &msr_force_gravity, &(msr_gravity){g});
+  add_force(scene, &msr_force_push, &(msr_push){5, fx, fy});
+  add_force(scene, &well, NULL);
   must(msr_scene_add_anchor(scene, &(msr_anchor){0, -9, 1, 0, 4}, &why)); /* long, and slack */
-  must(msr_scene_add_force(scene, &msr_force_drag, &(msr_drag){1e-9}, &why));
+  add_force(scene, &msr_force_drag, &(msr_drag){1e-9});
   world w = open_world(scene, NULL, 0);
   const msr_view at = msr_state_view(w.state);
   const double x0 = at.x[5], y0 = at.y[5];
@@ -247,25 +247,25 @@ static void energy_counts_every_potential(void **state) {
   assert_close(e.longest, fmax(by_hand.longest, hypot(s.x[0] + 9, s.y[0] - 1) / 4));
   assert_close(e.total, e.kinetic + e.spring + e.gravity + energy_of_well(NULL, &s) -
                             fx * (s.x[5] - x0) - fy * (s.y[5] - y0));
-  close_world(&w);
+  close_world(w);
 }
 
 /* The momentum of a pushed lattice grows by F t, whatever its springs do. */
 static void a_push_gives_its_impulse(void **state) {
   (void)state;
   msr_scene *scene = free_lattice(0.01);
-  must(msr_scene_add_force(scene, &msr_force_push, &(msr_push){4, 3, -2}, &why));
+  add_force(scene, &msr_force_push, &(msr_push){4, 3, -2});
   world w = open_world(scene, NULL, 1);
   advance(&w, 100);
   const msr_energy e = msr_state_energy(w.state);
   const double rounding = 4 * 100 * DBL_EPSILON * MASSES * mass * 10;
   assert_true(fabs(e.px - 3) < rounding && fabs(e.py + 2) < rounding);
-  close_world(&w);
+  close_world(w);
 }
 
 /* ---- Bounces on a floor */
 
-static const char *const shaft[] = {"r", ".", ".", ".", ".", ".", ".", ".", "#"};
+static const char shaft[] = "o\n.\n.\n.\n.\n.\n.\n.\n#\n";
 
 /* Verlet is exact in a uniform field, and the rule of contacts (keep y, reverse vy) exactly
  * reversible: v -> -v at the same place. Each bounce is a mirror image of the fall; only the
@@ -273,7 +273,7 @@ static const char *const shaft[] = {"r", ".", ".", ".", ".", ".", ".", ".", "#"}
 static void a_bouncing_mass_keeps_its_energy(void **state) {
   (void)state;
   const msr_conf conf = {0.01, 9.8, mass, 1, 1, 1};
-  world w = open_world(scene_of(draw(LENGTH(shaft), shaft), &conf, NULL), NULL, 0);
+  world w = open_world(scene_of(shaft, &conf, NULL), NULL, 0);
   const double e0 = total(&w), y0 = msr_state_view(w.state).y[0];
   double apex = 0, lowest = y0;
   for (int n = 0; n < 5000; n++) {
@@ -285,18 +285,51 @@ static void a_bouncing_mass_keeps_its_energy(void **state) {
   assert_true(msr_state_contacts(w.state) > 15);
   assert_true(fabs(apex - y0) < 5000 * DBL_EPSILON * 10);
   assert_true(lowest >= 1 && lowest < 1 + 0.01 * 12.1); /* the floor's top, or one step above it */
-  close_world(&w);
+  close_world(w);
 }
 
-static const char *const yard[] = {
-    "..............", "....rrrrrr....", "....rrrrrr....", "....rrrrrr....", "....rrrrrr....",
-    "..............", "..............", "..............", "..............", "##############",
-};
+/* A bounce gives and takes nothing, whatever the method: Runge-Kutta is exact in a uniform field,
+ * explicit Euler gains m g^2 h^2 / 2 in each step that doesn't end in a bounce, and no more. */
+static void a_bounce_itself_costs_nothing(void **state) {
+  (void)state;
+  const double h = 0.01, g = 9.8;
+  const struct {
+    const msr_integrator *method;
+    double gain; /* of energy, per step */
+  } rows[] = {{&msr_integrator_verlet, 0},
+              {&msr_integrator_rk4, 0},
+              {&msr_integrator_euler, mass * pow(g * h, 2) / 2}};
+  for (size_t r = 0; r < LENGTH(rows); r++) {
+    const msr_conf conf = {h, g, mass, 1, 1, 1};
+    const world w = open_world(scene_of(shaft, &conf, NULL), rows[r].method, 1);
+    const double e0 = total(&w);
+    for (int n = 1; n <= 2000; n++) {
+      advance(&w, 1);
+      const double falls = (double)n - (double)msr_state_contacts(w.state);
+      const double error = total(&w) - e0 - falls * rows[r].gain;
+      if (!(fabs(error) < 2000 * DBL_EPSILON * 10))
+        fail_msg("%s: %g after %d steps", rows[r].method->name, error, n);
+    }
+    assert_true(msr_state_contacts(w.state) > 5);
+    close_world(w);
+  }
+}
+
+static const char yard[] = "..............\n"
+                           "....oooooo....\n"
+                           "....oooooo....\n"
+                           "....oooooo....\n"
+                           "....oooooo....\n"
+                           "..............\n"
+                           "..............\n"
+                           "..............\n"
+                           "..............\n"
+                           "##############\n";
 
 /* Largest gain and loss of the total energy in 5 s, at the assignment's stiffness and mass. */
 static void bounce_block(double dt, double *gain, double *loss) {
   const msr_conf conf = {dt, 9.8, 0.1, 1500, 1, 1};
-  world w = open_world(scene_of(draw(LENGTH(yard), yard), &conf, NULL), NULL, 1);
+  world w = open_world(scene_of(yard, &conf, NULL), NULL, 1);
   const double e0 = total(&w);
   *gain = *loss = 0;
   for (double t = 0; t < 5; t += dt) {
@@ -305,7 +338,7 @@ static void bounce_block(double dt, double *gain, double *loss) {
     *loss = fmax(*loss, 1 - total(&w) / e0);
   }
   assert_true(msr_state_contacts(w.state) > 50);
-  close_world(&w);
+  close_world(w);
 }
 
 /* An impact costs a stiff block a little energy, of an order between 1 and 2 of the step: measured
@@ -320,6 +353,22 @@ static void a_bouncing_block_is_not_heated(void **state) {
   }
 }
 
+/* Measured +0.23 % in 20 s at 8 substeps; with all of a step's kick on one side of the drift, it is
+ * 18 % or more. */
+static void runge_kutta_does_not_heat_a_block(void **state) {
+  (void)state;
+  const world w = open_world(scene_of(yard, &example, NULL), &msr_integrator_rk4, 8);
+  const double e0 = total(&w);
+  double most = 0;
+  for (int n = 0; n < 4000; n++) {
+    advance(&w, 1);
+    most = fmax(most, total(&w) / e0 - 1);
+  }
+  assert_true(msr_state_contacts(w.state) > 100);
+  if (!(most < 0.01)) fail_msg("+%g", most);
+  close_world(w);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(energy_has_no_trend_if_symplectic),
@@ -330,7 +379,9 @@ int main(void) {
       cmocka_unit_test(energy_counts_every_potential),
       cmocka_unit_test(a_push_gives_its_impulse),
       cmocka_unit_test(a_bouncing_mass_keeps_its_energy),
+      cmocka_unit_test(a_bounce_itself_costs_nothing),
       cmocka_unit_test(a_bouncing_block_is_not_heated),
+      cmocka_unit_test(runge_kutta_does_not_heat_a_block),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

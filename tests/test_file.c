@@ -4,6 +4,7 @@
 #include "base/file.h"
 
 #include "alloc.h"
+#include "files.h"
 
 #include <dirent.h>
 #include <fcntl.h>
@@ -18,24 +19,6 @@
 #include <unistd.h>
 
 #include <cmocka.h>
-
-static char directory[256]; /* of this test */
-
-/* Path of a file in it; the next two calls leave it alone. */
-static const char *in(const char *name) {
-  static char paths[3][512];
-  static int next;
-  char *path = paths[next++ % 3];
-  snprintf(path, sizeof *paths, "%s/%s", directory, name);
-  return path;
-}
-
-static void put(const char *path, const char *text) {
-  FILE *stream = fopen(path, "w");
-  assert_non_null(stream);
-  assert_true(fputs(text, stream) >= 0);
-  assert_int_equal(fclose(stream), 0);
-}
 
 static void check_content(const char *path, const char *text) {
   unsigned char *bytes = NULL;
@@ -65,17 +48,9 @@ static int lowest_free_descriptor(void) {
   return fd;
 }
 
-static int make_directory(void **state) {
-  (void)state;
+static int set_up(void **state) {
   free_descriptor = lowest_free_descriptor();
-  const char *parent = getenv("TMPDIR");
-  snprintf(directory, sizeof directory, "%s/msr-file-XXXXXX", parent ? parent : "/tmp");
-  return mkdtemp(directory) ? 0 : -1;
-}
-
-static int remove_directory(void **state) {
-  (void)state;
-  return rmdir(directory);
+  return make_directory(state);
 }
 
 /* ---- Reading */
@@ -95,17 +70,17 @@ static void check_unreadable(const char *path, size_t limit, msr_status status,
 
 static void files_are_read_whole(void **state) {
   (void)state;
-  put(in("empty"), "");
-  check_content(in("empty"), "");
-  put(in("short"), "short");
-  check_content(in("short"), "short");
-  unlink(in("empty"));
-  unlink(in("short"));
+  write_file(path_of("empty"), "");
+  check_content(path_of("empty"), "");
+  write_file(path_of("short"), "short");
+  check_content(path_of("short"), "short");
+  unlink(path_of("empty"));
+  unlink(path_of("short"));
 }
 
 static void what_cannot_be_read_says_why(void **state) {
   (void)state;
-  check_unreadable(in("none"), 9, MSR_EIO,
+  check_unreadable(path_of("none"), 9, MSR_EIO,
                    ": cannot read it: No such file or directory; check its name");
   check_unreadable(directory, 9, MSR_EIO,
                    ": cannot read it: Is a directory; give a file, not a directory");
@@ -116,14 +91,14 @@ static void no_more_than_the_limit_is_read(void **state) {
   (void)state;
   static const char message[] =
       ":1:1: larger than the 9 bytes that are read at most; check that it is the right file";
-  put(in("ten"), "0123456789");
-  check_unreadable(in("ten"), 9, MSR_EINPUT, message);
+  write_file(path_of("ten"), "0123456789");
+  check_unreadable(path_of("ten"), 9, MSR_EINPUT, message);
   check_unreadable("/dev/zero", 9, MSR_EINPUT, message);
-  assert_int_equal(truncate(in("ten"), 1 << 30), 0);
+  assert_int_equal(truncate(path_of("ten"), 1 << 30), 0);
   alloc_largest = 0;
-  check_unreadable(in("ten"), 9, MSR_EINPUT, message);
+  check_unreadable(path_of("ten"), 9, MSR_EINPUT, message);
   assert_true(alloc_largest < 1 << 20);
-  unlink(in("ten"));
+  unlink(path_of("ten"));
 }
 
 static msr_status refuse(const char *path, const unsigned char *head, size_t size, msr_error *err) {
@@ -180,11 +155,11 @@ static void a_pipe_is_read_through_signals(void **state) {
   unsigned char *bytes = NULL;
   size_t size = 0;
   int status = 1;
-  assert_int_equal(mkfifo(in("pipe"), 0600), 0);
+  assert_int_equal(mkfifo(path_of("pipe"), 0600), 0);
   sigaction(SIGUSR1, &action, &before);
-  const pid_t pid = run(dribble, in("pipe"));
+  const pid_t pid = run(dribble, path_of("pipe"));
   msr_error err;
-  if (msri_file_read(in("pipe"), 1 << 20, &bytes, &size, &err)) fail_msg("%s", err.message);
+  if (msri_file_read(path_of("pipe"), 1 << 20, &bytes, &size, &err)) fail_msg("%s", err.message);
   assert_int_equal(size, 300000);
   for (size_t i = 0; i < size; i++) assert_true(bytes[i] == 'x');
   while (waitpid(pid, &status, 0) < 0) {
@@ -192,7 +167,7 @@ static void a_pipe_is_read_through_signals(void **state) {
   assert_int_equal(status, 0);
   sigaction(SIGUSR1, &before, NULL);
   free(bytes);
-  unlink(in("pipe"));
+  unlink(path_of("pipe"));
 }
 
 /* ---- Writing */
@@ -222,36 +197,37 @@ static void commit(msri_file *file) {
 
 static void a_file_appears_whole(void **state) {
   (void)state;
-  msri_file file = create(in("new"));
+  msri_file file = create(path_of("new"));
   assert_int_equal(msri_file_flush(&file, NULL), MSR_OK);
-  assert_int_not_equal(access(in("new"), F_OK), 0);
+  assert_int_not_equal(access(path_of("new"), F_OK), 0);
   commit(&file);
-  check_content(in("new"), "new");
+  check_content(path_of("new"), "new");
   assert_int_equal(count_files(), 1);
-  unlink(in("new"));
+  unlink(path_of("new"));
 }
 
 static void an_abandoned_file_leaves_nothing(void **state) {
   (void)state;
-  put(in("old"), "old");
-  msri_file file = create(in("old")), other = create(in("other")), none = {.stream = NULL};
+  write_file(path_of("old"), "old");
+  msri_file file = create(path_of("old")), other = create(path_of("other")),
+            none = {.stream = NULL};
   msri_file_abandon(&file);
   msri_file_abandon(&file);
   msri_file_abandon(&other);
   msri_file_abandon(&none);
-  check_content(in("old"), "old");
+  check_content(path_of("old"), "old");
   assert_int_equal(count_files(), 1);
-  unlink(in("old"));
+  unlink(path_of("old"));
 }
 
 static void two_may_be_written_at_once(void **state) {
   (void)state;
-  msri_file first = create(in("a")), second = create(in("a"));
+  msri_file first = create(path_of("a")), second = create(path_of("a"));
   msri_file_abandon(&first);
   commit(&second);
-  check_content(in("a"), "new");
+  check_content(path_of("a"), "new");
   assert_int_equal(count_files(), 1);
-  unlink(in("a"));
+  unlink(path_of("a"));
 }
 
 static mode_t mode_of(const char *path) {
@@ -263,30 +239,30 @@ static mode_t mode_of(const char *path) {
 static void permissions_are_the_usual_ones(void **state) {
   (void)state;
   const mode_t before = umask(027);
-  msri_file file = create(in("new"));
+  msri_file file = create(path_of("new"));
   commit(&file);
-  assert_int_equal(mode_of(in("new")), 0640);
-  assert_int_equal(chmod(in("new"), 0604), 0);
-  file = create(in("new"));
+  assert_int_equal(mode_of(path_of("new")), 0640);
+  assert_int_equal(chmod(path_of("new"), 0604), 0);
+  file = create(path_of("new"));
   commit(&file);
-  assert_int_equal(mode_of(in("new")), 0604);
+  assert_int_equal(mode_of(path_of("new")), 0604);
   umask(before);
-  unlink(in("new"));
+  unlink(path_of("new"));
 }
 
 static void a_link_is_followed(void **state) {
   (void)state;
   struct stat st;
-  put(in("file"), "old");
-  assert_int_equal(symlink("file", in("link")), 0);
-  msri_file file = create(in("link"));
+  write_file(path_of("file"), "old");
+  assert_int_equal(symlink("file", path_of("link")), 0);
+  msri_file file = create(path_of("link"));
   commit(&file);
-  check_content(in("file"), "new");
-  assert_int_equal(lstat(in("link"), &st), 0);
+  check_content(path_of("file"), "new");
+  assert_int_equal(lstat(path_of("link"), &st), 0);
   assert_true(S_ISLNK(st.st_mode));
   assert_int_equal(count_files(), 2);
-  unlink(in("link"));
-  unlink(in("file"));
+  unlink(path_of("link"));
+  unlink(path_of("file"));
 }
 
 static void a_name_alone_is_enough(void **state) {
@@ -297,8 +273,8 @@ static void a_name_alone_is_enough(void **state) {
   msri_file file = create("alone");
   commit(&file);
   assert_int_equal(chdir(before), 0);
-  check_content(in("alone"), "new");
-  unlink(in("alone"));
+  check_content(path_of("alone"), "new");
+  unlink(path_of("alone"));
 }
 
 static void read_new(const char *path) {
@@ -310,21 +286,21 @@ static void read_new(const char *path) {
 static void devices_and_pipes_are_written_directly(void **state) {
   (void)state;
   int status = 1;
-  assert_int_equal(mkfifo(in("pipe"), 0600), 0);
-  const pid_t pid = run(read_new, in("pipe"));
-  msri_file file = create_direct(in("pipe"));
+  assert_int_equal(mkfifo(path_of("pipe"), 0600), 0);
+  const pid_t pid = run(read_new, path_of("pipe"));
+  msri_file file = create_direct(path_of("pipe"));
   commit(&file);
   assert_int_equal(waitpid(pid, &status, 0), pid);
   assert_int_equal(status, 0);
   file = create_direct("/dev/null");
   commit(&file);
   assert_int_equal(count_files(), 1);
-  unlink(in("pipe"));
+  unlink(path_of("pipe"));
 }
 
 /* Redirects `fd` to a file that holds "old" and writes to `path`, which stands for it. */
 static void check_standing(int fd, const char *path) {
-  const int before = dup(fd), file_fd = open(in("out"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  const int before = dup(fd), file_fd = open(path_of("out"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   assert_true(before >= 0 && file_fd >= 0);
   assert_int_equal(write(file_fd, "old", 3), 3);
   assert_int_equal(dup2(file_fd, fd), fd);
@@ -335,9 +311,9 @@ static void check_standing(int fd, const char *path) {
   close(before);
   close(file_fd);
   assert_int_equal(written, 1);
-  check_content(in("out"), "oldnew!");
+  check_content(path_of("out"), "oldnew!");
   assert_int_equal(count_files(), 1);
-  unlink(in("out"));
+  unlink(path_of("out"));
 }
 
 static void standard_output_goes_on_where_it_was(void **state) {
@@ -364,7 +340,8 @@ static void check_unwritable(const char *path, const char *message) {
 static void what_cannot_be_written_says_why(void **state) {
   (void)state;
   check_unwritable(directory, ": cannot write it: Is a directory; give a file, not a directory");
-  check_unwritable(in("none/x"), ": cannot write it: No such file or directory; check its name");
+  check_unwritable(path_of("none/x"),
+                   ": cannot write it: No such file or directory; check its name");
   check_unwritable("/dev/fd/99999", ": cannot write it: Bad file descriptor; check its name");
   check_unwritable("/dev/fd/x", ": cannot write it: No such file or directory; check its name");
   check_unwritable("/dev/fd/", ": cannot write it: Is a directory; give a file, not a directory");
@@ -403,13 +380,13 @@ static void a_full_disk_is_noticed(void **state) {
 
 static void a_file_that_cannot_take_its_name_is_removed(void **state) {
   (void)state;
-  msri_file file = create(in("new"));
-  assert_int_equal(mkdir(in("new"), 0700), 0);
+  msri_file file = create(path_of("new"));
+  assert_int_equal(mkdir(path_of("new"), 0700), 0);
   msr_error err;
   assert_int_equal(msri_file_commit(&file, &err), MSR_EIO);
   assert_non_null(strstr(err.message, "new: cannot write it: "));
   assert_int_equal(count_files(), 1);
-  assert_int_equal(rmdir(in("new")), 0);
+  assert_int_equal(rmdir(path_of("new")), 0);
 }
 
 static bool attempt_create(void) {
@@ -422,7 +399,7 @@ static bool attempt_create(void) {
 static bool attempt_read(void) {
   unsigned char *bytes = NULL;
   size_t size = 0;
-  const bool done = msri_file_read(in("large"), 1 << 20, &bytes, &size, NULL) == MSR_OK;
+  const bool done = msri_file_read(path_of("large"), 1 << 20, &bytes, &size, NULL) == MSR_OK;
   assert_int_equal(size, done ? 100000 : 0);
   free(bytes);
   return done;
@@ -430,12 +407,12 @@ static bool attempt_read(void) {
 
 static void running_out_of_memory_is_an_error(void **state) {
   (void)state;
-  msri_file file = create(in("large"));
+  msri_file file = create(path_of("large"));
   assert_int_equal(ftruncate(fileno(file.stream), 100000), 0);
   commit(&file);
   assert_int_equal(alloc_fail_each(attempt_create), 1);
   assert_int_equal(alloc_fail_each(attempt_read), 2);
-  unlink(in("large"));
+  unlink(path_of("large"));
 }
 
 static void no_descriptor_is_left_open(void **state) {
@@ -464,5 +441,5 @@ int main(void) {
       cmocka_unit_test(running_out_of_memory_is_an_error),
       cmocka_unit_test(no_descriptor_is_left_open),
   };
-  return cmocka_run_group_tests(tests, make_directory, remove_directory);
+  return cmocka_run_group_tests(tests, set_up, remove_directory);
 }

@@ -1,33 +1,11 @@
 /* test_integrators.c - tries to refute what every integrator of the library declares: its order, on
- * plain systems with known solutions and on lattices with every kind of force; its limits of
- * stability; reversibility; symplecticity; evaluations. And a run has the same bits however it is
- * cut in pieces. */
-#include "scenes.h"
+ * plain systems with known solutions and on lattices with every kind of force; reversibility;
+ * symplecticity; evaluations. */
+#include "systems.h"
 
 #include <gsl/gsl_sf_elljac.h>
-#include <stdio.h>
-#include <unistd.h>
-
-/* Calls check for every integrator of the library. */
-static void on_all(void (*check)(const msr_integrator *integrator)) {
-  for (const msr_integrator *const *i = msr_integrators; *i; i++) check(*i);
-}
 
 /* ---- Plain systems */
-
-/* What the callbacks of a system share: how often a was asked for. */
-typedef struct counted {
-  double omega, gamma;
-  uint64_t calls;
-} counted;
-
-static msr_status oscillate(void *self, double t, const double *q, const double *v, double *a) {
-  (void)t, (void)v;
-  counted *c = self;
-  c->calls++;
-  a[0] = -c->omega * c->omega * q[0];
-  return MSR_OK;
-}
 
 static msr_status swing(void *self, double t, const double *q, const double *v, double *a) {
   (void)self, (void)t, (void)v;
@@ -46,12 +24,6 @@ static msr_status fall_to_sun(void *self, double t, const double *q, const doubl
 static msr_status shaken(void *self, double t, const double *q, const double *v, double *a) {
   (void)self, (void)v;
   a[0] = -q[0] + sin(2 * t);
-  return MSR_OK;
-}
-
-static msr_status slow_down(void *self, double t, const double *q, const double *v, double *a) {
-  (void)t, (void)q;
-  a[0] = -((const counted *)self)->gamma * v[0];
   return MSR_OK;
 }
 
@@ -138,67 +110,7 @@ static void plain_systems_show_the_declared_order(void **state) {
   on_all(check_plain_order);
 }
 
-/* Forces of a user: one that depends on t, one on v, without a flow. */
-
-static msr_status add_tide(const void *self, void *scratch, const msr_view *s, double *fx,
-                           double *fy) {
-  (void)self, (void)scratch;
-  for (size_t i = 0; i < s->n; i++) {
-    fx[i] += 3 * cos(9 * s->t) * msr_view_mass(s, i);
-    fy[i] -= sin(7 * s->t + s->x[i]);
-  }
-  return MSR_OK;
-}
-static const msr_force tide = {.name = "tide", .summary = "t", .uses_time = true, .add = add_tide};
-
-static msr_status add_swirl(const void *self, void *scratch, const msr_view *s, double *fx,
-                            double *fy) {
-  (void)self, (void)scratch;
-  for (size_t i = 0; i < s->n; i++) {
-    fx[i] += 0.4 * s->vy[i] - 0.1 * s->vx[i] * s->vx[i] * s->vx[i];
-    fy[i] -= 0.4 * s->vx[i] - 0.1 * s->vy[i] * s->x[i];
-  }
-  return MSR_OK;
-}
-static const msr_force swirl = {
-    .name = "swirl", .summary = "v", .uses_velocity = true, .add = add_swirl};
-
-/* A smoothly deformed lattice in motion, with up to three forces. */
-enum { WIDTH = 5, HEIGHT = 4, MASSES = WIDTH * HEIGHT, MOST_FORCES = 5 };
-static const struct medium {
-  const char *name;
-  const msr_force *force[MOST_FORCES];
-} media[] = {
-    {"nothing", {NULL}},
-    {"gravity", {&msr_force_gravity}},
-    {"drag", {&msr_force_drag}},
-    {"damping", {&msr_force_damping}},
-    {"wind", {&msr_force_wind}},
-    {"tide", {&tide}},
-    {"swirl", {&swirl}},
-    {"all", {&msr_force_drag, &tide, &msr_force_damping, &swirl, &msr_force_wind}},
-};
-
-static void deform(world *w) {
-  const msr_arrays s = msr_state_edit(w->state);
-  for (size_t i = 0; i < MASSES; i++) {
-    const double x = s.x[i], y = s.y[i];
-    s.x[i] += 0.15 * sin(0.9 * x + 0.3 * y);
-    s.y[i] += 0.15 * cos(0.5 * x - 0.8 * y);
-    s.vx[i] = 1.5 * cos(0.7 * x) - 0.2 * y;
-    s.vy[i] = sin(0.6 * y) + 0.2 * x;
-  }
-}
-
-static world deformed(const struct medium *m, const msr_integrator *integrator, double dt,
-                      uint64_t substeps) {
-  msr_scene *scene = lattice(WIDTH, HEIGHT, 8, &(msr_conf){dt, 0, 0.5, 30, 1, 1});
-  for (size_t f = 0; f < MOST_FORCES && m->force[f]; f++)
-    must(msr_scene_add_force(scene, m->force[f], trial_params(m->force[f]), &why));
-  world w = open_world(scene, integrator, substeps);
-  deform(&w);
-  return w;
-}
+/* ---- Order on lattices */
 
 /* Any force that depends on v holds a splitting to order 2: its flow is taken by half steps at both
  * ends (Strang). Other methods keep theirs. */
@@ -210,22 +122,26 @@ static int expected_order(const msr_integrator *integrator, const struct medium 
 }
 
 /* By the differences between one h and its half, over 0.4 s from h = 0.025 on (omega h = 0.5). */
-static void check_scene_order(const msr_integrator *integrator) {
+static void check_medium_order(const msr_integrator *integrator, const struct medium *m,
+                               int declared) {
   enum { FINEST = 6 };
   double z[FINEST + 1][4 * MASSES], errors[FINEST];
-  for (size_t m = 0; m < LENGTH(media); m++) {
-    for (size_t level = 0; level <= FINEST; level++) {
-      world w = deformed(&media[m], integrator, 0.4, (int64_t)16 << level);
-      advance(&w, 1);
-      read_world(&w, z[level]);
-      close_world(&w);
-    }
-    for (size_t level = 0; level < FINEST; level++)
-      errors[level] = distance(4 * MASSES, z[level], z[level + 1]);
-    const double order = order_of(FINEST, errors, 1e-10);
-    if (!(fabs(order - expected_order(integrator, &media[m])) < 0.1))
-      fail_msg("%s, %s: order %g", integrator->name, media[m].name, order);
+  for (size_t level = 0; level <= FINEST; level++) {
+    world w = deformed(m, integrator, 0.4, (uint64_t)16 << level);
+    advance(&w, 1);
+    read_world(&w, z[level]);
+    close_world(w);
   }
+  for (size_t level = 0; level < FINEST; level++)
+    errors[level] = distance(4 * MASSES, z[level], z[level + 1]);
+  const double order = order_of(FINEST, errors, 1e-10);
+  if (!(fabs(order - declared) < 0.1))
+    fail_msg("%s, %s: order %g", integrator->name, m->name, order);
+}
+
+static void check_scene_order(const msr_integrator *integrator) {
+  for (size_t m = 0; m < LENGTH(media); m++)
+    check_medium_order(integrator, &media[m], expected_order(integrator, &media[m]));
 }
 
 static void lattices_show_the_declared_order(void **state) {
@@ -242,12 +158,12 @@ static void integrators_agree(void **state) {
     world fine = deformed(&media[m], &msr_integrator_rk4, 0.4, 512);
     advance(&fine, 1);
     read_world(&fine, reference);
-    close_world(&fine);
+    close_world(fine);
     for (const msr_integrator *const *i = msr_integrators; *i; i++) {
       world w = deformed(&media[m], *i, 0.4, 2048);
       advance(&w, 1);
       read_world(&w, z);
-      close_world(&w);
+      close_world(w);
       const double most = 1e-8 + 10 * pow(0.4 / 2048 / 0.04, expected_order(*i, &media[m]));
       if (!(distance(4 * MASSES, z, reference) < most))
         fail_msg("%s, %s: %g", (*i)->name, media[m].name, distance(4 * MASSES, z, reference));
@@ -255,150 +171,60 @@ static void integrators_agree(void **state) {
   }
 }
 
-/* ---- Stability */
+/* ---- A composition of one's own */
 
-/* Largest |q|, |v| of the last of `steps` steps of h = 1 from q = v = 1. */
-static double grown(const msr_integrator *integrator, const msr_system *system, uint64_t steps) {
-  double q = 1, v = 1;
-  must(msr_integrate(integrator, system, 0, 1, steps, &q, &v, &why));
-  return isfinite(q) && isfinite(v) ? fmax(fabs(q), fabs(v)) : (double)INFINITY;
+static msr_status begin_jumps(const msr_integrator *self, const msr_system *system, double t,
+                              const double *q, const double *v, double *work) {
+  (void)self;
+  return msr_integrator_verlet.begin(&msr_integrator_verlet, system, t, q, v, work);
 }
 
-/* Below the limit by one in a thousand, Verlet swings by 1 / sqrt(1 - 0.999^2) = 22. Above, what
- * grows least is Runge-Kutta's, by 0.7 % a step. */
-static void check_frequency_limit(const msr_integrator *integrator) {
-  const double limit = integrator->stability, none[] = {1.5, 0.5, 0.1};
-  counted c = {.omega = 0.999 * limit};
-  const msr_system system = {.n = 1, .self = &c, .acceleration = oscillate};
-  if (limit > 0) assert_true(grown(integrator, &system, 20000) < 100);
-  c.omega = 1.001 * limit;
-  if (limit > 0) assert_true(grown(integrator, &system, 20000) > 1e6);
-  for (size_t i = 0; limit <= 0 && i < LENGTH(none); i++) {
-    c.omega = none[i];
-    assert_true(grown(integrator, &system, 20000) > 1e6);
+/* Verlet thrice: forward beyond the end, back to before the start, and to the end. */
+static msr_status jump(const msr_integrator *self, const msr_system *system,
+                       const msr_interval *interval, double *q, double *v, double *work) {
+  (void)self;
+  const double forward = 1 / (2 - cbrt(2)), at[] = {0, forward, 1 - forward, 1};
+  msr_status status = MSR_OK;
+  for (int n = 0; n < 3 && status == MSR_OK; n++) {
+    const msr_interval part = {msr_interval_time(interval, at[n]),
+                               (at[n + 1] - at[n]) * interval->h,
+                               msr_interval_time(interval, at[n + 1])};
+    status = msr_integrator_verlet.step(&msr_integrator_verlet, system, &part, q, v, work);
   }
+  return status;
 }
 
-static void the_limit_of_frequency_is_sharp(void **state) {
+static const msr_integrator triple_jump = {.name = "triple-jump",
+                                           .summary = "Verlet thrice",
+                                           .reference = "Yoshida 1990, Phys. Lett. A 150, 262",
+                                           .order = 4,
+                                           .symplectic = true,
+                                           .reversible = true,
+                                           .splits = true,
+                                           .evaluations = 3,
+                                           .stability = 1.573,
+                                           .damping_stability = 1,
+                                           .vectors = 1,
+                                           .begin = begin_jumps,
+                                           .step = jump};
+
+/* Forces that depend on t are asked for outside of the step, and the order is 4 all the same. */
+static void a_composition_beyond_the_step_keeps_its_order(void **state) {
   (void)state;
-  on_all(check_frequency_limit);
+  check_plain_order(&triple_jump);
+  for (size_t m = 0; m < LENGTH(media); m++)
+    if (media[m].force[0] == &tide) check_medium_order(&triple_jump, &media[m], 4);
 }
 
-/* q = 1 + the sum of all v: bounded too. */
-static void check_damping_limit(const msr_integrator *integrator) {
-  counted c = {.gamma = 0.999 * integrator->damping_stability};
-  const msr_system system = {.n = 1, .self = &c, .acceleration = slow_down};
-  assert_true(grown(integrator, &system, 20000) < 100);
-  c.gamma = 1.001 * integrator->damping_stability;
-  assert_true(grown(integrator, &system, 20000) > 1e6);
-}
-
-static void the_limit_of_damping_is_sharp(void **state) {
+/* What t + c h gives, except at 1: there it's the end, which t + h is not here. */
+static void stages_are_at_t_plus_c_h(void **state) {
   (void)state;
-  on_all(check_damping_limit);
-}
-
-static msr_status oscillate_slowing(void *self, double t, const double *q, const double *v,
-                                    double *a) {
-  const counted *c = self;
-  must(oscillate(self, t, q, v, a));
-  if (v) a[0] -= c->gamma * v[0];
-  return MSR_OK;
-}
-
-static msr_status decay(void *self, double t, double h, bool backward, const double *q, double *v) {
-  (void)t, (void)backward, (void)q;
-  v[0] *= exp(-((const counted *)self)->gamma * h);
-  return MSR_OK;
-}
-
-/* A splitting is stable up to its limit of frequency for any damping taken exactly; any other
- * method on the segment between its two limits. */
-static void check_both_limits(const msr_integrator *integrator) {
-  if (!(integrator->stability > 0)) return;
-  for (double part = 0.05; part < 1; part += 0.1) {
-    const bool splits = integrator->splits;
-    counted c = {.omega = 0.99 * integrator->stability * (splits ? 1 : part),
-                 .gamma = splits ? 10 * part : 0.99 * integrator->damping_stability * (1 - part)};
-    const msr_system system = {.n = 1,
-                               .self = &c,
-                               .acceleration = splits ? oscillate : oscillate_slowing,
-                               .damp = splits ? decay : NULL};
-    if (!(grown(integrator, &system, 20000) < 100))
-      fail_msg("%s: h omega %g, h gamma %g", integrator->name, c.omega, c.gamma);
-  }
-}
-
-static void both_limits_hold_together(void **state) {
-  (void)state;
-  on_all(check_both_limits);
-}
-
-/* Two masses on a spring, omega^2 = 2 k / m: the plan's bound is their frequency itself. */
-static void check_plan_limit(const msr_integrator *integrator) {
-  msr_scene *scene = empty_scene(0.01);
-  for (int i = 0; i < 2; i++) add_mass(scene, i, 0, 0, 0, 0.5);
-  must(msr_scene_add_spring(scene, 0, 1, 400, 1, &why));
-  world w = open_world(scene, integrator, 1);
-  const msr_plan_figures f = msr_plan_describe(w.plan);
-  assert_true(fabs(f.omega - 40) < 40 * 4 * DBL_EPSILON);
-  assert_true(fabs(f.stable_step - integrator->stability / 40) <= 4 * DBL_EPSILON);
-  close_world(&w);
-}
-
-static void the_stable_step_of_a_pair_is_exact(void **state) {
-  (void)state;
-  on_all(check_plan_limit);
-}
-
-/* The pair, swinging along itself from a phase on, with a brake of `rate` times its omega. */
-static world swinging(const msr_integrator *integrator, double dt, double phase,
-                      const msr_force *brake, double rate) {
-  const double k = 400, m = 0.5, omega = 40, a = 0.02; /* far from turning inside out */
-  msr_scene *scene = empty_scene(dt);
-  for (int side = -1; side <= 1; side += 2)
-    add_mass(scene, side * (0.5 + a * cos(phase)), 0, side * a * omega * sin(phase), 0, m);
-  must(msr_scene_add_spring(scene, 0, 1, k, 1, &why));
-  const msr_drag c = {rate * omega * m}; /* all that a damping holds, too */
-  if (rate > 0) must(msr_scene_add_force(scene, brake, &c, &why));
-  return open_world(scene, integrator, 1);
-}
-
-/* At the library's own largest step, where the bound of frequencies is sharp, nothing runs away and
- * the guard is content. Symplectic Euler's energy swings most, by 1.9 / 0.1 = 19. */
-static void check_safe_step(const msr_integrator *integrator, const msr_force *brake, double rate) {
-  world any = swinging(integrator, 1, 0, brake, rate);
-  const double dt = msr_plan_describe(any.plan).safe_step;
-  close_world(&any);
-  for (double phase = 0; phase < 3.1; phase += 0.2) {
-    world w = swinging(integrator, dt, phase, brake, rate);
-    const double e0 = msr_state_energy(w.state).total;
-    if (msr_state_step(w.state, 1000, &why) != MSR_OK)
-      fail_msg("%s, %s %g omega: %s", integrator->name, brake->name, rate, why.message);
-    assert_true(msr_state_energy(w.state).total < 20 * e0);
-    close_world(&w);
-  }
-}
-
-static void check_brakes(const msr_integrator *integrator) {
-  for (double rate = 0.01; rate < 200 && integrator->stability > 0; rate *= 4) {
-    check_safe_step(integrator, &msr_force_drag, rate);
-    check_safe_step(integrator, &msr_force_damping, rate);
-  }
-}
-
-static void safe_steps_are_stable_with_damping(void **state) {
-  (void)state;
-  on_all(check_brakes);
-}
-
-static void check_free_swing(const msr_integrator *integrator) {
-  if (integrator->stability > 0) check_safe_step(integrator, &msr_force_drag, 0);
-}
-
-static void safe_steps_content_the_guard(void **state) {
-  (void)state;
-  on_all(check_free_swing);
+  const msr_interval interval = {0.1, 0.2, 0.3};
+  const double shares[] = {0, 0.5, 0.999, 1.001, 1.35, 2, -0.35, -1};
+  assert_true(0.1 + 0.2 > 0.3);
+  assert_true(msr_interval_time(&interval, 1) == 0.3);
+  for (size_t n = 0; n < LENGTH(shares); n++)
+    assert_true(msr_interval_time(&interval, shares[n]) == 0.1 + shares[n] * 0.2);
 }
 
 /* ---- Reversibility */
@@ -444,7 +270,7 @@ static void check_scene_return(const msr_integrator *integrator) {
     write_world(&w, z);
   }
   check_return(integrator, steps, distance(4 * MASSES, z, start));
-  close_world(&w);
+  close_world(w);
 }
 
 static void flipping_v_retraces_the_path_if_declared(void **state) {
@@ -530,7 +356,7 @@ static void check_mesh_area(const msr_integrator *integrator) {
     }
   }
   const double error = area_error(J, m);
-  close_world(&w);
+  close_world(w);
   if (integrator->symplectic ? !(error < 1e-8) : !(error > 1e-5))
     fail_msg("%s on a mesh: areas change by %g", integrator->name, error);
 }
@@ -556,7 +382,7 @@ static uint64_t calls_of_springs(const msr_integrator *integrator, uint64_t iter
   world w = deformed(&media[3], integrator, 0.01, 1);
   advance(&w, iterations);
   const uint64_t calls = msr_state_calls(w.state, 0);
-  close_world(&w);
+  close_world(w);
   return calls;
 }
 
@@ -574,149 +400,16 @@ static void steps_take_the_declared_evaluations(void **state) {
   on_all(check_evaluations);
 }
 
-/* ---- A run in pieces */
-
-enum { ITERATIONS = 70 }; /* past two looks of the guard */
-
-static void at_once(world *w) { advance(w, ITERATIONS); }
-
-static void one_at_a_time(world *w) {
-  for (int i = 0; i < ITERATIONS; i++) advance(w, 1);
-}
-
-static void touched(world *w) {
-  advance(w, 33);
-  (void)msr_state_edit(w->state);
-  advance(w, ITERATIONS - 33);
-}
-
-static void copied(world *w) {
-  msr_state *copy;
-  must(msr_state_create(w->plan, &copy, &why));
-  advance(w, 20);
-  msr_state_copy(copy, w->state);
-  advance(w, 5);
-  msr_state_free(w->state);
-  w->state = copy;
-  advance(w, ITERATIONS - 20);
-}
-
-static void saved_and_loaded(world *w) {
-  char path[4096];
-  const char *dir = getenv("TMPDIR");
-  snprintf(path, sizeof path, "%s/msr-state-XXXXXX", dir ? dir : "/tmp");
-  const int file = mkstemp(path);
-  assert_true(file >= 0);
-  close(file);
-  advance(w, 41);
-  must(msr_state_save(w->state, path, &why));
-  msr_state_free(w->state);
-  must(msr_state_create(w->plan, &w->state, &why));
-  advance(w, 3);
-  must(msr_state_load(w->state, path, &why));
-  remove(path);
-  advance(w, ITERATIONS - 41);
-}
-
-static void forked(world *w) {
-  msr_state *copy;
-  must(msr_state_create(w->plan, &copy, &why));
-  msr_state_copy(copy, w->state);
-  must(msr_state_step(copy, 60, &why));
-  advance(w, 10);
-  msr_state_copy(w->state, copy);
-  msr_state_free(copy);
-  advance(w, ITERATIONS - 60);
-}
-
-static const struct way {
-  const char *name;
-  void (*go)(world *w);
-} ways[] = {{"at once", at_once}, {"one at a time", one_at_a_time},       {"touched", touched},
-            {"copied", copied},   {"saved and loaded", saved_and_loaded}, {"forked", forked}};
-
-static void check_ways(const msr_integrator *integrator) {
-  for (size_t m = 0; m < LENGTH(media); m++) {
-    double first[4 * MASSES], z[4 * MASSES];
-    uint64_t hash = 0;
-    for (size_t n = 0; n < LENGTH(ways); n++) {
-      world w = deformed(&media[m], integrator, 0.003, 3);
-      ways[n].go(&w);
-      assert_int_equal(msr_state_iteration(w.state), ITERATIONS);
-      read_world(&w, n == 0 ? first : z);
-      if (n == 0) hash = msr_state_hash(w.state);
-      if (hash != msr_state_hash(w.state) || (n > 0 && memcmp(z, first, sizeof z) != 0))
-        fail_msg("%s, %s, %s: other bits", integrator->name, media[m].name, ways[n].name);
-      close_world(&w);
-    }
-  }
-}
-
-static void a_run_in_pieces_has_the_same_bits(void **state) {
-  (void)state;
-  on_all(check_ways);
-}
-
-/* Where a doesn't depend on t. */
-static void check_plain_pieces(const msr_integrator *integrator) {
-  counted c = {.omega = 1};
-  const msr_system system = system_of(&plains[1], &c);
-  double whole[] = {1, 0.5}, pieces[] = {1, 0.5};
-  must(msr_integrate(integrator, &system, 0, 0.1, 20, whole, whole + 1, &why));
-  for (int n = 0; n < 4; n++)
-    must(msr_integrate(integrator, &system, 0, 0.1, 5, pieces, pieces + 1, &why));
-  assert_memory_equal(whole, pieces, sizeof whole);
-}
-
-static void a_plain_run_in_pieces_has_the_same_bits(void **state) {
-  (void)state;
-  on_all(check_plain_pieces);
-}
-
-/* 4 substeps are 4 iterations of a quarter of DT: the same bits where nothing depends on t, and
- * where something does, to the rounding of t, 1e-16 s times rates of 100 a second. */
-static void check_substeps(const msr_integrator *integrator) {
-  for (size_t m = 0; m < LENGTH(media); m++) {
-    double few[4 * MASSES], many[4 * MASSES];
-    bool uses_time = false;
-    for (size_t f = 0; f < MOST_FORCES && media[m].force[f]; f++)
-      uses_time |= media[m].force[f]->uses_time;
-    world w = deformed(&media[m], integrator, 0.01, 4);
-    advance(&w, 20);
-    read_world(&w, few);
-    close_world(&w);
-    w = deformed(&media[m], integrator, 0.0025, 1);
-    advance(&w, 80);
-    read_world(&w, many);
-    close_world(&w);
-    const double apart = distance(4 * MASSES, few, many);
-    if (!(apart <= (uses_time ? 1e-12 : 0)))
-      fail_msg("%s, %s: %g apart", integrator->name, media[m].name, apart);
-  }
-}
-
-static void substeps_are_smaller_iterations(void **state) {
-  (void)state;
-  on_all(check_substeps);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(plain_systems_show_the_declared_order),
       cmocka_unit_test(lattices_show_the_declared_order),
       cmocka_unit_test(integrators_agree),
-      cmocka_unit_test(the_limit_of_frequency_is_sharp),
-      cmocka_unit_test(the_limit_of_damping_is_sharp),
-      cmocka_unit_test(both_limits_hold_together),
-      cmocka_unit_test(the_stable_step_of_a_pair_is_exact),
-      cmocka_unit_test(safe_steps_are_stable_with_damping),
-      cmocka_unit_test(safe_steps_content_the_guard),
+      cmocka_unit_test(a_composition_beyond_the_step_keeps_its_order),
+      cmocka_unit_test(stages_are_at_t_plus_c_h),
       cmocka_unit_test(flipping_v_retraces_the_path_if_declared),
       cmocka_unit_test(areas_are_kept_if_declared),
       cmocka_unit_test(steps_take_the_declared_evaluations),
-      cmocka_unit_test(a_run_in_pieces_has_the_same_bits),
-      cmocka_unit_test(a_plain_run_in_pieces_has_the_same_bits),
-      cmocka_unit_test(substeps_are_smaller_iterations),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,40 +2,27 @@
  * MSR_ENOMEM, the message says so, nothing is created, nothing is left behind, and what there was
  * is as it was. Under a leak checker this shows that nothing is lost either.
  * link: --wrap=malloc --wrap=calloc --wrap=realloc */
-#include "msr.h"
-
 #include "alloc.h"
+#include "art.h"
+#include "files.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include <cmocka.h>
-
-static char directory[256], ppm[300], conf[300], frames[300], csv[300], npy[300], saved[300];
+static char ppm[300], conf[300], frames[300], csv[300], npy[300], saved[300];
 
 static int set_up(void **unused) {
-  (void)unused;
-  static const char conf_text[] = "DT\n0.02\nGRAVITE\n9.8\nMASSE\n0.1\nTENSION_RESSORT\n1500\n"
+  static const char conf_text[] = "DT\n0.002\nGRAVITE\n9.8\nMASSE\n0.1\nTENSION_RESSORT\n1500\n"
                                   "NB_ITERATIONS\n4\nNB_IMAGES\n2\n";
   static const char ppm_text[] = "P3 4 4 255\n"
                                  "255 0 0  255 0 0  255 255 255  0 255 0\n"
                                  "255 0 0  255 0 0  255 255 255  0 255 0\n"
                                  "255 255 255  255 255 255  255 255 255  255 255 255\n"
                                  "0 0 0  0 0 0  0 0 0  0 0 0\nP3 1 1 1 1 1 1\n";
-  const char *root = getenv("TMPDIR");
-  snprintf(directory, sizeof directory, "%s/msr-memory-XXXXXX", root ? root : "/tmp");
-  if (!mkdtemp(directory)) return -1;
+  if (make_directory(unused) != 0) return -1;
   const struct {
     char *path;
     const char *name, *text;
   } files[] = {{ppm, "s.ppm", ppm_text}, {conf, "s.conf", conf_text}, {frames, "frames", NULL},
                {csv, "s.csv", NULL},     {npy, "t.npy", NULL},        {saved, "state", NULL}};
-  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+  for (size_t i = 0; i < LENGTH(files); i++) {
     snprintf(files[i].path, sizeof ppm, "%s/%s", directory, files[i].name);
     if (!files[i].text) continue;
     FILE *file = fopen(files[i].path, "w");
@@ -44,12 +31,10 @@ static int set_up(void **unused) {
   return 0;
 }
 
-/* The directory is empty again: no temporary file was forgotten. */
 static int tear_down(void **unused) {
-  (void)unused;
   remove(ppm);
   remove(conf);
-  return rmdir(directory);
+  return remove_directory(unused);
 }
 
 /* ---- Failures must be told as such */
@@ -114,7 +99,7 @@ static bool add_all(msr_scene *scene, msr_error *err) {
     if (!done(msr_scene_add_spring(scene, i, before, 10, 1, err), err)) return false;
     if (!done(msr_scene_add_anchor(scene, &(msr_anchor){i, 0, 9, 1, 1}, err), err)) return false;
   }
-  for (size_t i = 0; i < sizeof forces / sizeof *forces; i++)
+  for (size_t i = 0; i < LENGTH(forces); i++)
     if (!done(msr_scene_add_force(scene, forces[i].force, forces[i].params, err), err))
       return false;
   return true;

@@ -1,21 +1,9 @@
 /* test_plan.c - plans: their figures, the stable step against closed forms and against what really
  * explodes, substeps, notes, memory, and the arithmetic of frames.
  * link: --wrap=malloc --wrap=calloc --wrap=realloc --wrap=free */
-#include "msr.h"
+#include "art.h"
 
-#include <float.h>
 #include <malloc.h>
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
-#define LENGTH(array) (sizeof(array) / sizeof *(array))
 
 /* ---- Memory in use */
 
@@ -57,8 +45,7 @@ static const msr_conf usual = {0.005, 0, 0.1, 1500, 1, 1};
 static msr_scene *lattice(size_t width, size_t height, size_t below, const msr_conf *conf,
                           msr_scene_options options) {
   msr_picture *picture;
-  msr_scene *scene;
-  assert_int_equal(msr_picture_create(width + 4, height + 4, &picture, NULL), MSR_OK);
+  must(msr_picture_create(width + 4, height + 4, &picture, &why));
   for (size_t r = 2; r < height + 2; r++)
     for (size_t c = 2; c < width + 2; c++) {
       unsigned char *rgb = picture->rgb + 3 * (r * picture->width + c);
@@ -66,9 +53,7 @@ static msr_scene *lattice(size_t width, size_t height, size_t below, const msr_c
     }
   if (below > 0)
     memset(picture->rgb + 3 * ((height + 1 + below) * picture->width), 0, 3 * (width + 4));
-  assert_int_equal(msr_scene_from_picture("p", picture, conf, &options, &scene, NULL), MSR_OK);
-  msr_picture_free(picture);
-  return scene;
+  return scene_from(picture, conf, &options);
 }
 
 static msr_plan *plan_with(msr_scene *scene, const msr_integrator *integrator, uint64_t substeps) {
@@ -132,16 +117,16 @@ static void springs_join_neighbours(void **unused) {
     msr_picture *picture;
     msr_scene *scene;
     msr_state *state;
-    assert_int_equal(msr_picture_create(SIDE, SIDE, &picture, NULL), MSR_OK);
+    must(msr_picture_create(SIDE, SIDE, &picture, &why));
     for (size_t p = 0; p < SIDE * SIDE; p++) {
       if ((p * 7919 + seed * 104729) % 11 < 4) continue;
       picture->rgb[3 * p + 1] = 0;
       pixel[n++] = p;
     }
     const msr_scene_options options = {.neighbours = neighbours};
-    assert_int_equal(msr_scene_from_picture("p", picture, &usual, &options, &scene, NULL), MSR_OK);
+    must(msr_scene_from_picture("p", picture, &usual, &options, &scene, &why));
     msr_plan *plan = plan_with(scene, NULL, 0);
-    assert_int_equal(msr_state_create(plan, &state, NULL), MSR_OK);
+    must(msr_state_create(plan, &state, &why));
     const msr_springs *springs = msr_state_view(state).springs;
     for (size_t r = 0; r < springs->n_runs; r++) {
       const msr_run_of_springs *run = &springs->run[r];
@@ -182,7 +167,7 @@ static void anchors_start_at_rest(void **unused) {
   msr_plan *plan =
       plan_with(lattice(4, 2, 1, &usual, (msr_scene_options){8, true, false}), NULL, 0);
   msr_state *state;
-  assert_int_equal(msr_state_create(plan, &state, NULL), MSR_OK);
+  must(msr_state_create(plan, &state, &why));
   const msr_energy e = msr_state_energy(state);
   assert_true(e.spring == 0 && near(e.longest, 1));
   msr_state_free(state);
@@ -235,20 +220,19 @@ static double bound_by_hand(const msr_view *s, double z) {
 /* Masses, stiffnesses and anchors all different, with damping and drag. */
 static msr_scene *mixture(double z, double c) {
   msr_scene *scene;
-  assert_int_equal(msr_scene_create(&scene, NULL), MSR_OK);
+  must(msr_scene_create(&scene, &why));
   for (size_t i = 0; i < 40; i++) {
     const msr_mass mass = {
         .x = (double)(i % 8), .y = (double)(i / 8), .m = 0.1 + (double)(i * i % 17)};
-    assert_int_equal(msr_scene_add_mass(scene, &mass, NULL, NULL), MSR_OK);
+    must(msr_scene_add_mass(scene, &mass, NULL, &why));
   }
   for (size_t i = 0; i < 40; i++) {
-    assert_int_equal(
-        msr_scene_add_spring(scene, i, (i * 7 + 3) % 40, (double)(i % 5) * 100, 1, NULL), MSR_OK);
+    must(msr_scene_add_spring(scene, i, (i * 7 + 3) % 40, (double)(i % 5) * 100, 1, &why));
     const msr_anchor anchor = {i, 0, 0, (double)(i % 3) * 10, 1};
-    if (i % 4 == 0) assert_int_equal(msr_scene_add_anchor(scene, &anchor, NULL), MSR_OK);
+    if (i % 4 == 0) must(msr_scene_add_anchor(scene, &anchor, &why));
   }
-  assert_int_equal(msr_scene_add_force(scene, &msr_force_damping, &(msr_damping){z}, NULL), MSR_OK);
-  assert_int_equal(msr_scene_add_force(scene, &msr_force_drag, &(msr_drag){c}, NULL), MSR_OK);
+  must(msr_scene_add_force(scene, &msr_force_damping, &(msr_damping){z}, &why));
+  must(msr_scene_add_force(scene, &msr_force_drag, &(msr_drag){c}, &why));
   return scene;
 }
 
@@ -259,7 +243,7 @@ static void stable_step_of_mixtures(void **unused) {
   for (const msr_integrator *const *method = msr_integrators; *method; method++) {
     msr_plan *plan = plan_with(mixture(z, c), *method, 1);
     msr_state *state;
-    assert_int_equal(msr_state_create(plan, &state, NULL), MSR_OK);
+    must(msr_state_create(plan, &state, &why));
     const msr_view s = msr_state_view(state);
     const msr_plan_figures f = msr_plan_describe(plan);
     const double omega = sqrt(bound_by_hand(&s, 0));
@@ -300,7 +284,7 @@ static void stable_step_without_a_flow(void **unused) {
     msr_conf slack = usual;
     slack.stiffness = 0;
     msr_scene *scene = lattice(1, 1, 0, &slack, (msr_scene_options){0});
-    assert_int_equal(msr_scene_add_force(scene, &slow, NULL, NULL), MSR_OK);
+    must(msr_scene_add_force(scene, &slow, NULL, &why));
     const msr_plan_figures f = figures_of(scene, msr_integrators[i], 1);
     assert_true(near(f.stable_step, limit[i] / 100));
   }
@@ -324,7 +308,7 @@ static bool explodes(double K, int neighbours) {
   msr_plan *plan =
       plan_with(lattice(24, 24, 0, &conf, (msr_scene_options){.neighbours = neighbours}), NULL, 1);
   msr_state *state;
-  assert_int_equal(msr_state_create(plan, &state, NULL), MSR_OK);
+  must(msr_state_create(plan, &state, &why));
   const msr_arrays a = msr_state_edit(state);
   for (size_t i = 0; i < 24 * 24; i++) {
     a.vx[i] = 1e-6 * ((double)(i * 7919 % 101) - 50);
@@ -367,7 +351,7 @@ static void the_stable_step_is_below_what_explodes(void **unused) {
 
 /* ---- Substeps and notes */
 
-static msr_scene *example(double dt, size_t below) {
+static msr_scene *block(double dt, size_t below) {
   msr_conf conf = usual;
   conf.dt = dt;
   return lattice(5, 5, below, &conf, (msr_scene_options){0});
@@ -382,16 +366,35 @@ static void substeps_are_as_few_as_is_safe(void **unused) {
   for (size_t i = 0; i < LENGTH(steps); i++)
     for (size_t below = 0; below <= 2; below += 2) {
       const double dt = steps[i], safe = (below ? 0.5 : 0.9) * STABLE;
-      const msr_plan_figures f = figures_of(example(dt, below), NULL, 0);
+      const msr_plan_figures f = figures_of(block(dt, below), NULL, 0);
       assert_true(near(f.stable_step, STABLE) && near(f.safe_step, safe));
       assert_true(f.h == dt / (double)f.substeps);
       assert_true(f.h <= safe * (1 + 1e-11));
       if (f.substeps > 1) assert_true(dt / (double)(f.substeps - 1) > safe);
-      assert_int_equal(figures_of(example(dt, below), NULL, 1).substeps, 1);
-      assert_int_equal(figures_of(example(dt, below), NULL, 7).substeps, 7);
+      assert_int_equal(figures_of(block(dt, below), NULL, 1).substeps, 1);
+      assert_int_equal(figures_of(block(dt, below), NULL, 7).substeps, 7);
     }
   // a DT that is the safe step itself, but for rounding, takes one
-  assert_int_equal(figures_of(example(0.9 * STABLE * (1 + 1e-14), 0), NULL, 0).substeps, 1);
+  assert_int_equal(figures_of(block(0.9 * STABLE * (1 + 1e-14), 0), NULL, 0).substeps, 1);
+}
+
+/* Where a fall of the picture's height (9 px) can crush springs, m g H > 0.15 k L^2, the step is
+ * smaller in proportion, down to an eighth; where nothing is met, it isn't. */
+static void safe_steps_are_smaller_where_springs_are_crushed(void **unused) {
+  (void)unused;
+  static const struct {
+    double crush; /* m g H / k L^2 */
+    size_t below;
+    double share;
+  } rows[] = {{0.1, 2, 0.5},       {0.149, 2, 0.5}, {0.3, 2, 0.25}, {-0.3, 2, 0.25},
+              {1.2, 2, 0.5 / 8.0}, {99, 2, 0.0625}, {0.3, 0, 0.9}};
+  for (size_t i = 0; i < LENGTH(rows); i++) {
+    msr_conf conf = usual;
+    conf.gravity = rows[i].crush * conf.stiffness / (9 * conf.mass);
+    const msr_plan_figures f =
+        figures_of(lattice(5, 5, rows[i].below, &conf, (msr_scene_options){0}), NULL, 0);
+    assert_true(near(f.safe_step, rows[i].share * STABLE));
+  }
 }
 
 static void notes_say_what_was_not_asked_for(void **unused) {
@@ -410,26 +413,29 @@ static void notes_say_what_was_not_asked_for(void **unused) {
        "steps of 0.0055 s are above 0.005196 s, the largest that is safe here: the run may heat up "
        "and then explode; 2 substeps would be safe"},
       {0.01, 0, NULL, 3, NULL},
+      {0.005, 2, NULL, 1,
+       "steps of 0.005 s are above 0.002887 s, the largest that is safe here: the run may heat up "
+       "and then explode; 2 substeps would be safe"},
+      {0.0028, 2, NULL, 1, NULL},
       {0.005, 2, NULL, 0,
-       "2 substeps of 0.0025 s per iteration: the largest step that is stable at any stretch is "
-       "0.005774 s, of which 0.5 is safe here"},
+       "2 substeps of 0.0025 s per iteration: steps up to 0.002887 s are safe here (the largest "
+       "that "
+       "is stable at any stretch is 0.005774 s)"},
       {0.01, 0, NULL, 0,
-       "2 substeps of 0.005 s per iteration: the largest step that is stable at any stretch is "
-       "0.005774 s, of which 0.9 is safe here"},
+       "2 substeps of 0.005 s per iteration: steps up to 0.005196 s are safe here (the largest "
+       "that is "
+       "stable at any stretch is 0.005774 s)"},
       {0.01, 0, NULL, 1,
        "steps of 0.01 s are above 0.005774 s, the largest that is stable at any stretch: the run "
-       "may "
-       "explode; 2 substeps would be safe"},
+       "may explode; 2 substeps would be safe"},
       {0.1, 0, NULL, 2,
        "steps of 0.05 s are above 0.005774 s, the largest that is stable at any stretch: the run "
-       "may "
-       "explode; 20 substeps would be safe"},
+       "may explode; 20 substeps would be safe"},
       {0.005, 0, &msr_integrator_euler, 0,
        "euler declares no stable step for springs: expect it to explode; use verlet"},
   };
   for (size_t i = 0; i < LENGTH(rows); i++) {
-    msr_plan *plan =
-        plan_with(example(rows[i].dt, rows[i].below), rows[i].method, rows[i].substeps);
+    msr_plan *plan = plan_with(block(rows[i].dt, rows[i].below), rows[i].method, rows[i].substeps);
     const char *note = msr_plan_warning(plan, 0);
     if (rows[i].note) {
       assert_non_null(note);
@@ -440,6 +446,23 @@ static void notes_say_what_was_not_asked_for(void **unused) {
     }
     msr_plan_free(plan);
   }
+}
+
+/* Stable with springs, it knows of no step that is stable with damping through a. */
+static void a_method_without_a_limit_of_damping_is_planned(void **unused) {
+  (void)unused;
+  msr_integrator frail = msr_integrator_rk4;
+  frail.name = "frail";
+  frail.damping_stability = 0;
+  msr_scene *scene = block(0.005, 0);
+  add_force(scene, &msr_force_drag, &(msr_drag){0.1});
+  msr_plan *plan = plan_with(scene, &frail, 0);
+  assert_string_equal(
+      msr_plan_warning(plan, 0),
+      "frail declares no stable step for damping: expect it to explode; use verlet");
+  const msr_plan_figures f = msr_plan_describe(plan);
+  assert_true(f.stable_step == 0 && f.substeps == 1);
+  msr_plan_free(plan);
 }
 
 static void what_cannot_be_planned_is_refused(void **unused) {
@@ -458,18 +481,49 @@ static void what_cannot_be_planned_is_refused(void **unused) {
   msr_plan_free(plan);
   msr_scene_free(scene);
 
-  scene = example(0.005, 0);
+  scene = block(0.005, 0);
   plan = NULL;
   const msr_plan_options lame = {.integrator = &nothing};
   assert_int_equal(msr_plan_create(scene, &lame, &plan, &err), MSR_EUSAGE);
   assert_string_equal(err.message, "an integrator needs at least name, summary and step");
-  assert_int_equal(msr_scene_add_force(scene, &msr_force_push, &(msr_push){25, 1, 0}, NULL),
-                   MSR_OK);
+  must(msr_scene_add_force(scene, &msr_force_push, &(msr_push){25, 1, 0}, &why));
   assert_int_equal(msr_plan_create(scene, NULL, &plan, &err), MSR_EUSAGE);
   assert_string_equal(err.message, "a push is on mass 25, and there are 25 masses");
   assert_null(plan);
   msr_scene_free(scene);
   msr_plan_free(NULL);
+}
+
+/* ---- A method that isn't what it says */
+
+static msr_status slow(const void *self, void *scratch, const msr_view *s, double *fx, double *fy) {
+  (void)self, (void)scratch;
+  for (size_t i = 0; i < s->n; i++) fx[i] -= 0.3 * s->vx[i], fy[i] -= 0.3 * s->vy[i];
+  return MSR_OK;
+}
+
+/* Whether it says that it splits or not, a method may ask for damping, and has room for what a
+ * force without a flow takes. */
+static void an_undeclared_splitting_has_room(void **unused) {
+  (void)unused;
+  static const msr_force slowing = {
+      .name = "slowing", .summary = "-0.3 v", .uses_velocity = true, .add = slow};
+  msr_integrator sly = msr_integrator_verlet;
+  sly.splits = false;
+  const msr_integrator *const methods[] = {&msr_integrator_verlet, &sly};
+  uint64_t hash[2], calls[2];
+  for (int i = 0; i < 2; i++) {
+    msr_scene *scene = block(0.001, 0);
+    add_force(scene, &slowing, NULL);
+    const world w = open_world(scene, methods[i], 1);
+    msr_state_edit(w.state).vx[0] = 1;
+    advance(&w, 100);
+    hash[i] = msr_state_hash(w.state);
+    calls[i] = msr_state_calls(w.state, 0);
+    close_world(w);
+  }
+  assert_true(hash[0] == hash[1]);
+  assert_true(calls[0] == 101 && calls[1] == 101);
 }
 
 /* ---- Memory */
@@ -480,9 +534,9 @@ static void assert_memory_is_told(msr_scene *scene) {
   const size_t before = in_use;
   msr_plan *plan;
   msr_state *state;
-  assert_int_equal(msr_plan_create(scene, NULL, &plan, NULL), MSR_OK);
+  must(msr_plan_create(scene, NULL, &plan, &why));
   const size_t by_plan = in_use - before;
-  assert_int_equal(msr_state_create(plan, &state, NULL), MSR_OK);
+  must(msr_state_create(plan, &state, &why));
   const size_t by_state = in_use - before - by_plan;
   const msr_plan_figures f = msr_plan_describe(plan);
   if (fabs((double)by_plan - (double)f.plan_bytes) > 0.02 * (double)by_plan + 8192)
@@ -496,15 +550,15 @@ static void assert_memory_is_told(msr_scene *scene) {
 
 static void memory_figures_are_true(void **unused) {
   (void)unused;
-  assert_memory_is_told(example(0.005, 0));
+  assert_memory_is_told(block(0.005, 0));
   assert_memory_is_told(lattice(200, 200, 2, &usual, (msr_scene_options){8, true, true}));
   msr_scene *scene = lattice(100, 100, 1, &usual, (msr_scene_options){8, true, false});
   for (size_t i = 0; i < 20000; i++) {
     const msr_mass mass = {.x = (double)i, .y = -5, .m = 1};
-    assert_int_equal(msr_scene_add_mass(scene, &mass, NULL, NULL), MSR_OK);
+    must(msr_scene_add_mass(scene, &mass, NULL, &why));
     const size_t j = (i * 7919 + 1) % 10000;
     if (i % 10000 == j) continue;
-    assert_int_equal(msr_scene_add_spring(scene, i % 10000, j, 1, 1, NULL), MSR_OK);
+    must(msr_scene_add_spring(scene, i % 10000, j, 1, 1, &why));
   }
   assert_memory_is_told(scene);
 }
@@ -526,8 +580,8 @@ static void frames_are_spread_evenly(void **unused) {
                                      {1000000000, 1000000000}};
   for (size_t r = 0; r < LENGTH(runs); r++) {
     const uint64_t iterations = runs[r][0], images = runs[r][1];
-    msr_scene *scene = example(0.001, 0);
-    assert_int_equal(msr_scene_set_times(scene, 0.001, iterations, images, NULL), MSR_OK);
+    msr_scene *scene = block(0.001, 0);
+    must(msr_scene_set_times(scene, 0.001, iterations, images, &why));
     msr_plan *plan = plan_with(scene, NULL, 0);
     assert_int_equal(msr_plan_frame_iteration(plan, 0), 0);
     for (uint64_t n = 0; n < 1000; n++) {
@@ -543,15 +597,14 @@ static void frames_are_spread_evenly(void **unused) {
 static void pixels_and_masses_are_one_to_one(void **unused) {
   (void)unused;
   msr_scene *scene = lattice(5, 3, 1, &usual, (msr_scene_options){0});
-  assert_int_equal(msr_scene_add_mass(scene, &(msr_mass){.x = 0, .y = 0, .m = 1}, NULL, NULL),
-                   MSR_OK);
+  must(msr_scene_add_mass(scene, &(msr_mass){.x = 0, .y = 0, .m = 1}, NULL, &why));
   msr_plan *plan;
-  assert_int_equal(msr_plan_create(scene, NULL, &plan, NULL), MSR_OK);
+  must(msr_plan_create(scene, NULL, &plan, &why));
   size_t column = 99, row = 99, index;
   for (size_t i = 0; i < 15; i++) {
     assert_true(msr_plan_pixel(plan, i, &column, &row));
     assert_true(column == 2 + i % 5 && row == 2 + i / 5);
-    assert_int_equal(msr_scene_mass_at(scene, column, row, &index, NULL), MSR_OK);
+    must(msr_scene_mass_at(scene, column, row, &index, &why));
     assert_int_equal(index, i);
   }
   column = row = 99;
@@ -574,7 +627,10 @@ int main(void) {
       cmocka_unit_test(nothing_stiff_is_stable_for_ever),
       cmocka_unit_test(the_stable_step_is_below_what_explodes),
       cmocka_unit_test(substeps_are_as_few_as_is_safe),
+      cmocka_unit_test(safe_steps_are_smaller_where_springs_are_crushed),
       cmocka_unit_test(notes_say_what_was_not_asked_for),
+      cmocka_unit_test(a_method_without_a_limit_of_damping_is_planned),
+      cmocka_unit_test(an_undeclared_splitting_has_room),
       cmocka_unit_test(what_cannot_be_planned_is_refused),
       cmocka_unit_test(memory_figures_are_true),
       cmocka_unit_test(frames_are_spread_evenly),

@@ -1,49 +1,15 @@
 /* test_renderer.c - drawing: the first frame is the scene, a scaled one its magnification, and no
  * state, however far astray, does harm. */
-#include "msr.h"
+#include "art.h"
 
-#include <float.h>
 #include <limits.h>
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
-#include <cmocka.h>
-
-#define LENGTH(array) (sizeof(array) / sizeof *(array))
-#define NO_NUMBER     ((double)NAN)
-#define INFINITE      ((double)INFINITY)
-
-/* ---- Pictures of letters */
-
-static const struct colour {
-  char letter;
-  unsigned char rgb[3];
-} colours[] = {{'.', {255, 255, 255}}, {'#', {0, 0, 0}},     {'o', {255, 0, 0}}, {'g', {0, 160, 0}},
-               {'b', {0, 0, 255}},     {'y', {200, 200, 0}}, {'d', {0, 0, 64}}};
-
-static const unsigned char *rgb_of(char letter) {
-  size_t i = 0;
-  while (colours[i].letter != letter) i++;
-  return colours[i].rgb;
-}
-
-static msr_picture *paint(const char *art) {
-  const size_t width = strcspn(art, "\n"), height = strlen(art) / (width + 1);
-  msr_picture *picture;
-  assert_int_equal(msr_picture_create(width, height, &picture, NULL), MSR_OK);
-  for (size_t p = 0; p < width * height; p++)
-    memcpy(picture->rgb + 3 * p, rgb_of(art[p + p / width]), 3);
-  return picture;
-}
+/* ---- Pictures */
 
 static msr_picture *random_picture(size_t most) {
   msr_picture *picture;
   const size_t width = 1 + (size_t)rand() % most, height = 1 + (size_t)rand() % most;
-  assert_int_equal(msr_picture_create(width, height, &picture, NULL), MSR_OK);
+  must(msr_picture_create(width, height, &picture, &why));
   for (size_t p = 0; p < width * height; p++)
     memcpy(picture->rgb + 3 * p, colours[(size_t)rand() % LENGTH(colours)].rgb, 3);
   return picture;
@@ -64,25 +30,22 @@ typedef struct drawing {
 
 static drawing drawing_of_scene(msr_scene *scene, const msr_style *style) {
   drawing d;
-  assert_int_equal(msr_plan_create(scene, NULL, &d.plan, NULL), MSR_OK);
-  assert_int_equal(msr_state_create(d.plan, &d.state, NULL), MSR_OK);
-  assert_int_equal(msr_renderer_create(d.plan, style, &d.renderer, NULL), MSR_OK);
+  must(msr_plan_create(scene, NULL, &d.plan, &why));
+  must(msr_state_create(d.plan, &d.state, &why));
+  must(msr_renderer_create(d.plan, style, &d.renderer, &why));
   msr_scene_free(scene);
   return d;
 }
 
-static msr_scene *scene_of(const msr_picture *picture) {
-  static const msr_conf conf = {0.005, 9.8, 0.1, 1500, 1, 1};
+/* The picture is left alone. */
+static msr_scene *scene_in(const msr_picture *picture) {
   msr_scene *scene;
-  assert_int_equal(msr_scene_from_picture("art", picture, &conf, NULL, &scene, NULL), MSR_OK);
+  must(msr_scene_from_picture("art", picture, &example, NULL, &scene, &why));
   return scene;
 }
 
 static drawing drawing_of(const char *art, const msr_style *style) {
-  msr_picture *picture = paint(art);
-  const drawing d = drawing_of_scene(scene_of(picture), style);
-  msr_picture_free(picture);
-  return d;
+  return drawing_of_scene(scene_of(art, &example, NULL), style);
 }
 
 static void end(drawing d) {
@@ -103,7 +66,7 @@ static void the_first_frame_is_the_scene(void **unused) {
   (void)unused;
   for (int i = 0; i < 200; i++) {
     msr_picture *picture = random_picture(12);
-    const drawing d = drawing_of_scene(scene_of(picture), i % 2 ? &(msr_style){.scale = 1} : NULL);
+    const drawing d = drawing_of_scene(scene_in(picture), i % 2 ? &(msr_style){.scale = 1} : NULL);
     assert_same_picture(msr_renderer_draw(d.renderer, d.state), picture);
     assert_same_picture(msr_renderer_draw(d.renderer, d.state), picture); // and again
     end(d);
@@ -117,7 +80,7 @@ static void a_scaled_frame_is_a_magnification(void **unused) {
   for (unsigned scale = 1; scale < 9; scale++)
     for (int i = 0; i < 10; i++) {
       msr_picture *picture = random_picture(8);
-      const drawing d = drawing_of_scene(scene_of(picture), &(msr_style){.scale = scale});
+      const drawing d = drawing_of_scene(scene_in(picture), &(msr_style){.scale = scale});
       const msr_picture *frame = msr_renderer_draw(d.renderer, d.state);
       assert_true(frame->width == scale * picture->width);
       assert_true(frame->height == scale * picture->height);
@@ -212,14 +175,12 @@ static void later_masses_are_on_top(void **unused) {
 
 static void masses_by_hand_have_their_colours(void **unused) {
   (void)unused;
-  msr_picture *picture = paint("o..\n");
-  msr_scene *scene = scene_of(picture);
+  msr_scene *scene = scene_of("o..\n", &example, NULL);
   msr_mass mass = {.x = 1.5, .y = 0.5, .m = 1};
   memcpy(mass.rgb, rgb_of('b'), 3);
-  assert_int_equal(msr_scene_add_mass(scene, &mass, NULL, NULL), MSR_OK);
+  must(msr_scene_add_mass(scene, &mass, NULL, &why));
   const drawing d = drawing_of_scene(scene, NULL);
   assert_draws(d, "ob.\n");
-  msr_picture_free(picture);
   end(d);
 }
 
@@ -251,18 +212,16 @@ static void every_other_stripe_has_another_colour(void **unused) {
 /* A stripe's colour goes with the mass; rows of the scene count, above the picture too. */
 static void stripes_move_with_their_masses(void **unused) {
   (void)unused;
-  msr_picture *picture = paint("oo.\noo.\n");
-  msr_scene *scene = scene_of(picture);
+  msr_scene *scene = scene_of("oo.\noo.\n", &example, NULL);
   msr_mass above = {.x = 2.5, .y = 2.5, .m = 1}; // one row above the picture: the stripe before
   memcpy(above.rgb, rgb_of('o'), 3);
-  assert_int_equal(msr_scene_add_mass(scene, &above, NULL, NULL), MSR_OK);
+  must(msr_scene_add_mass(scene, &above, NULL, &why));
   const drawing d = drawing_of_scene(scene, &(msr_style){.stripes = 1});
   assert_draws(d, "oo.\ngg.\n");
   msr_arrays a = msr_state_edit(d.state);
   for (size_t i = 0; i < 4; i++) a.y[i] = 2 - a.y[i];
   a.y[4] = 1.5;
   assert_draws(d, "ggg\noo.\n");
-  msr_picture_free(picture);
   end(d);
 }
 
@@ -274,8 +233,8 @@ static void frames_that_cannot_be_are_refused(void **unused) {
   msr_plan *plan;
   msr_renderer *renderer = NULL;
   msr_error err;
-  assert_int_equal(msr_scene_create(&scene, NULL), MSR_OK);
-  assert_int_equal(msr_plan_create(scene, NULL, &plan, NULL), MSR_OK);
+  must(msr_scene_create(&scene, &why));
+  must(msr_plan_create(scene, NULL, &plan, &why));
   assert_int_equal(msr_renderer_create(plan, NULL, &renderer, &err), MSR_EUSAGE);
   assert_string_equal(err.message, "a scene without a picture has no frames");
   msr_plan_free(plan);

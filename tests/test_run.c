@@ -1,23 +1,11 @@
 /* test_run.c - whole runs: which frames come when and where they go, what the files hold, how a run
  * is stopped and goes on, and what happens when a sink fails. */
-#include "msr.h"
+#include "art.h"
+#include "files.h"
 
 #include <fcntl.h>
-#include <math.h>
 #include <pthread.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
-
-#include <cmocka.h>
-
-#define LENGTH(array) (sizeof(array) / sizeof *(array))
-#define NO_NUMBER     ((double)NAN)
 
 /* ---- A simulation: a block that falls on a floor, 37 iterations, 10 frames */
 
@@ -30,30 +18,15 @@ static const char art[] = ".ooo....\n"
                           "........\n"
                           "########\n";
 
-static msr_picture *scene_picture(void) {
-  msr_picture *picture;
-  assert_int_equal(msr_picture_create(WIDTH, HEIGHT, &picture, NULL), MSR_OK);
-  for (size_t p = 0; p < WIDTH * HEIGHT; p++) {
-    const char letter = art[p + p / WIDTH];
-    unsigned char *rgb = picture->rgb + 3 * p;
-    if (letter != '.') rgb[1] = rgb[2] = 0;
-    if (letter == '#') rgb[0] = 0;
-  }
-  return picture;
-}
-
 static msr_plan *plan_of(uint64_t iterations, uint64_t images) {
   const msr_conf conf = {0.02, 30, 0.1, 500, iterations, images};
-  msr_picture *picture = scene_picture();
-  msr_scene *scene;
   msr_plan *plan;
-  assert_int_equal(msr_scene_from_picture("art", picture, &conf, NULL, &scene, NULL), MSR_OK);
+  msr_scene *scene = scene_of(art, &conf, NULL);
   const msr_wind wind = {.speed = 2, .gust = 2, .gust_time = 0.2, .seed = 5};
-  assert_int_equal(msr_scene_add_force(scene, &msr_force_wind, &wind, NULL), MSR_OK);
-  assert_int_equal(msr_plan_create(scene, NULL, &plan, NULL), MSR_OK);
+  must(msr_scene_add_force(scene, &msr_force_wind, &wind, &why));
+  must(msr_plan_create(scene, NULL, &plan, &why));
   assert_true(msr_plan_describe(plan).substeps > 2);
   msr_scene_free(scene);
-  msr_picture_free(picture);
   return plan;
 }
 
@@ -61,7 +34,7 @@ static msr_plan *plan; /* ITERATIONS and FRAMES */
 
 static msr_state *new_state(const msr_plan *of) {
   msr_state *state;
-  assert_int_equal(msr_state_create(of, &state, NULL), MSR_OK);
+  must(msr_state_create(of, &state, &why));
   return state;
 }
 
@@ -91,7 +64,7 @@ static void expect(void) {
   msr_state *state = new_state(plan);
   for (uint64_t i = 0; i < FRAMES; i++) {
     const uint64_t iteration = i * ITERATIONS / FRAMES;
-    assert_int_equal(msr_state_step(state, iteration - msr_state_iteration(state), NULL), MSR_OK);
+    must(msr_state_step(state, iteration - msr_state_iteration(state), &why));
     const msr_view s = msr_state_view(state);
     due.hash[i] = msr_state_hash(state);
     due.contacts[i] = msr_state_contacts(state);
@@ -108,29 +81,15 @@ static void expect(void) {
 
 /* ---- Files */
 
-static char directory[256];
-
 static int set_up(void **unused) {
-  (void)unused;
-  const char *root = getenv("TMPDIR");
-  snprintf(directory, sizeof directory, "%s/msr-run-XXXXXX", root ? root : "/tmp");
   plan = plan_of(ITERATIONS, FRAMES);
   expect();
-  return mkdtemp(directory) ? 0 : -1;
+  return make_directory(unused);
 }
 
 static int tear_down(void **unused) {
-  (void)unused;
   msr_plan_free(plan);
-  return rmdir(directory);
-}
-
-static const char *path_of(const char *name) {
-  static char paths[4][512];
-  static size_t turn;
-  turn = (turn + 1) % LENGTH(paths);
-  snprintf(paths[turn], sizeof paths[turn], "%s/%s", directory, name);
-  return paths[turn];
+  return remove_directory(unused);
 }
 
 static const char *frame_path(const char *dir, size_t frame) {
@@ -152,13 +111,6 @@ static size_t read_file(const char *path, char bytes[MOST_BYTES]) {
   return size;
 }
 
-static void write_file(const char *path) {
-  FILE *file = fopen(path, "w");
-  assert_non_null(file);
-  assert_true(fputs("mine", file) >= 0);
-  assert_int_equal(fclose(file), 0);
-}
-
 static void remove_frames(const char *dir, size_t frames) {
   for (size_t i = 0; i < frames; i++) assert_int_equal(remove(frame_path(dir, i)), 0);
   assert_int_equal(rmdir(path_of(dir)), 0); // nothing else is there
@@ -174,16 +126,16 @@ static void frames_are_pictures_of_their_states(void **unused) {
   const size_t start = sizeof header - 1, size = 3 * WIDTH * HEIGHT;
   msr_sink sink;
   msr_renderer *renderer;
-  assert_int_equal(msr_frames_open(plan, path_of("a"), NULL, false, &sink, NULL), MSR_OK);
+  must(msr_frames_open(plan, path_of("a"), NULL, false, &sink, &why));
   assert_int_equal(run_into(plan, &sink, 1, NULL), MSR_OK);
-  assert_int_equal(msr_renderer_create(plan, NULL, &renderer, NULL), MSR_OK);
+  must(msr_renderer_create(plan, NULL, &renderer, &why));
   msr_state *state = new_state(plan);
-  msr_picture *scene = scene_picture();
+  msr_picture *scene = paint(art);
   for (size_t i = 0; i < FRAMES; i++) {
     assert_int_equal(read_file(frame_path("a", i), bytes), start + size);
     assert_memory_equal(bytes, header, start);
     const uint64_t to_go = i * ITERATIONS / FRAMES - msr_state_iteration(state);
-    assert_int_equal(msr_state_step(state, to_go, NULL), MSR_OK);
+    must(msr_state_step(state, to_go, &why));
     assert_memory_equal(bytes + start, msr_renderer_draw(renderer, state)->rgb, size);
     if (i == 0) assert_memory_equal(bytes + start, scene->rgb, size);
   }
@@ -198,7 +150,7 @@ static void directories_above_are_made(void **unused) {
   static const char *const names[] = {"a/b/c", "a/b/c/", "a//b///c"};
   for (size_t i = 0; i < LENGTH(names); i++) {
     msr_sink sink;
-    assert_int_equal(msr_frames_open(plan, path_of(names[i]), NULL, false, &sink, NULL), MSR_OK);
+    must(msr_frames_open(plan, path_of(names[i]), NULL, false, &sink, &why));
     assert_int_equal(run_into(plan, &sink, 1, NULL), MSR_OK);
     remove_frames("a/b/c", FRAMES);
     assert_int_equal(rmdir(path_of("a/b")), 0);
@@ -215,15 +167,15 @@ static void frames_of_another_run_are_kept_or_replaced(void **unused) {
   msr_sink sink = {0};
   msr_error err;
   assert_int_equal(mkdir(path_of("a"), 0777), 0);
-  for (size_t i = 0; i < LENGTH(others); i++) write_file(path_of(others[i]));
+  for (size_t i = 0; i < LENGTH(others); i++) write_file(path_of(others[i]), "mine");
   assert_int_equal(msr_frames_open(plan, path_of("a"), NULL, false, &sink, &err), MSR_OK);
-  assert_int_equal(msr_sink_close(&sink, NULL), MSR_OK);
+  must(msr_sink_close(&sink, &why));
   assert_null(sink.close);
-  assert_int_equal(msr_sink_close(&sink, NULL), MSR_OK); // again: nothing
+  must(msr_sink_close(&sink, &why)); // again: nothing
 
-  write_file(frame_path("a", 3));
-  write_file(frame_path("a", 99));
-  write_file(path_of("a/frame-1234567.ppm"));
+  write_file(frame_path("a", 3), "mine");
+  write_file(frame_path("a", 99), "mine");
+  write_file(path_of("a/frame-1234567.ppm"), "mine");
   assert_int_equal(msr_frames_open(plan, path_of("a"), NULL, false, &sink, &err), MSR_EUSAGE);
   char message[600];
   snprintf(message, sizeof message,
@@ -246,7 +198,7 @@ static void places_for_frames_that_are_none(void **unused) {
   (void)unused;
   msr_sink sink = {0};
   msr_error err;
-  write_file(path_of("file"));
+  write_file(path_of("file"), "mine");
   assert_int_equal(msr_frames_open(plan, "", NULL, false, &sink, &err), MSR_EUSAGE);
   assert_string_equal(err.message, "the frames' directory needs a name");
   assert_int_equal(msr_frames_open(plan, path_of("file"), NULL, false, &sink, &err), MSR_EIO);
@@ -268,14 +220,14 @@ static void a_frame_that_cannot_be_written_stops_the_run(void **unused) {
   (void)unused;
   msr_sink sink;
   msr_error err = {.message = ""};
-  assert_int_equal(msr_frames_open(plan, path_of("a"), NULL, false, &sink, NULL), MSR_OK);
+  must(msr_frames_open(plan, path_of("a"), NULL, false, &sink, &why));
   assert_int_equal(rmdir(path_of("a")), 0);
   msr_state *state = new_state(plan);
   assert_int_equal(msr_run(state, &(msr_run_options){.sinks = &sink, .n_sinks = 1}, &err), MSR_EIO);
   assert_non_null(strstr(err.message, "frame-000000.ppm: cannot write it: No such file"));
   assert_int_equal(msr_state_iteration(state), 0);
   msr_state_free(state);
-  assert_int_equal(msr_sink_close(&sink, NULL), MSR_OK);
+  must(msr_sink_close(&sink, &why));
 }
 
 /* ---- Standard output */
@@ -309,7 +261,7 @@ static void frames_stream_to_standard_output(void **unused) {
   static char bytes[MOST_BYTES], frame[MOST_BYTES];
   msr_sink sink;
   assert_int_equal(run_to_stdout(path_of("stream"), frames_to_stdout, NULL), MSR_OK);
-  assert_int_equal(msr_frames_open(plan, path_of("a"), NULL, false, &sink, NULL), MSR_OK);
+  must(msr_frames_open(plan, path_of("a"), NULL, false, &sink, &why));
   assert_int_equal(run_into(plan, &sink, 1, NULL), MSR_OK);
   const size_t size = read_file(path_of("stream"), bytes);
   size_t at = 0;
@@ -329,7 +281,7 @@ static void statistics_stream_to_standard_output(void **unused) {
   static char bytes[MOST_BYTES], file[MOST_BYTES];
   msr_sink sink;
   assert_int_equal(run_to_stdout(path_of("stream"), stats_to_stdout, NULL), MSR_OK);
-  assert_int_equal(msr_stats_open(plan, path_of("s.csv"), &sink, NULL), MSR_OK);
+  must(msr_stats_open(plan, path_of("s.csv"), &sink, &why));
   assert_int_equal(run_into(plan, &sink, 1, NULL), MSR_OK);
   const size_t size = read_file(path_of("stream"), bytes);
   remove(path_of("stream"));
@@ -347,7 +299,7 @@ static void statistics_are_exact(void **unused) {
   static char text[MOST_BYTES];
   static const char header[] = "frame,time,kinetic,spring,gravity,total,px,py,contacts,longest\n";
   msr_sink sink;
-  assert_int_equal(msr_stats_open(plan, path_of("s.csv"), &sink, NULL), MSR_OK);
+  must(msr_stats_open(plan, path_of("s.csv"), &sink, &why));
   assert_int_equal(run_into(plan, &sink, 1, NULL), MSR_OK);
   read_file(path_of("s.csv"), text);
   assert_int_equal(strncmp(text, header, sizeof header - 1), 0);
@@ -379,13 +331,13 @@ static msr_status count_down(void *data, const msr_state *state) {
 static void a_file_without_frames_is_not_kept(void **unused) {
   (void)unused;
   msr_sink sinks[2];
-  assert_int_equal(msr_stats_open(plan, path_of("s.csv"), &sinks[0], NULL), MSR_OK);
-  assert_int_equal(msr_trajectory_open(plan, path_of("t.npy"), &sinks[1], NULL), MSR_OK);
-  for (int s = 0; s < 2; s++) assert_int_equal(msr_sink_close(&sinks[s], NULL), MSR_OK);
+  must(msr_stats_open(plan, path_of("s.csv"), &sinks[0], &why));
+  must(msr_trajectory_open(plan, path_of("t.npy"), &sinks[1], &why));
+  for (int s = 0; s < 2; s++) must(msr_sink_close(&sinks[s], &why));
   assert_false(exists(path_of("s.csv")) || exists(path_of("t.npy")));
-  write_file(path_of("s.csv")); // nor is one that was there lost
-  assert_int_equal(msr_stats_open(plan, path_of("s.csv"), &sinks[0], NULL), MSR_OK);
-  assert_int_equal(msr_sink_close(&sinks[0], NULL), MSR_OK);
+  write_file(path_of("s.csv"), "mine"); // nor is one that was there lost
+  must(msr_stats_open(plan, path_of("s.csv"), &sinks[0], &why));
+  must(msr_sink_close(&sinks[0], &why));
   char text[MOST_BYTES];
   assert_int_equal(read_file(path_of("s.csv"), text), 4);
   remove(path_of("s.csv"));
@@ -432,7 +384,7 @@ static void assert_trajectory(const char *path, size_t frames) {
 static void trajectories_hold_every_bit(void **unused) {
   (void)unused;
   msr_sink sink;
-  assert_int_equal(msr_trajectory_open(plan, path_of("t.npy"), &sink, NULL), MSR_OK);
+  must(msr_trajectory_open(plan, path_of("t.npy"), &sink, &why));
   assert_int_equal(run_into(plan, &sink, 1, NULL), MSR_OK);
   assert_trajectory(path_of("t.npy"), FRAMES);
   remove(path_of("t.npy"));
@@ -446,13 +398,13 @@ static void large_trajectories_are_whole(void **unused) {
   msr_scene *scene;
   msr_plan *large;
   msr_sink sink;
-  assert_int_equal(msr_scene_create(&scene, NULL), MSR_OK);
+  must(msr_scene_create(&scene, &why));
   for (int i = 0; i < MANY; i++) {
     const msr_mass mass = {.x = i, .y = -i, .vx = 2 * i, .vy = 3 * i, .m = 1};
-    assert_int_equal(msr_scene_add_mass(scene, &mass, NULL, NULL), MSR_OK);
+    must(msr_scene_add_mass(scene, &mass, NULL, &why));
   }
-  assert_int_equal(msr_plan_create(scene, NULL, &large, NULL), MSR_OK);
-  assert_int_equal(msr_trajectory_open(large, path_of("t.npy"), &sink, NULL), MSR_OK);
+  must(msr_plan_create(scene, NULL, &large, &why));
+  must(msr_trajectory_open(large, path_of("t.npy"), &sink, &why));
   assert_int_equal(run_into(large, &sink, 1, NULL), MSR_OK);
   FILE *file = fopen(path_of("t.npy"), "rb");
   assert_non_null(file);
@@ -478,13 +430,13 @@ static void a_run_stopped_early_leaves_whole_files(void **unused) {
   uint64_t left = 15 * msr_plan_describe(plan).substeps;
   msr_state *state = new_state(plan);
   msr_sink sinks[3];
-  assert_int_equal(msr_trajectory_open(plan, path_of("t.npy"), &sinks[0], NULL), MSR_OK);
-  assert_int_equal(msr_stats_open(plan, path_of("s.csv"), &sinks[1], NULL), MSR_OK);
-  assert_int_equal(msr_frames_open(plan, path_of("a"), NULL, false, &sinks[2], NULL), MSR_OK);
+  must(msr_trajectory_open(plan, path_of("t.npy"), &sinks[0], &why));
+  must(msr_stats_open(plan, path_of("s.csv"), &sinks[1], &why));
+  must(msr_frames_open(plan, path_of("a"), NULL, false, &sinks[2], &why));
   const msr_run_options options = {sinks, 3, count_down, &left};
   assert_int_equal(msr_run(state, &options, NULL), MSR_EINTR);
   msr_state_free(state);
-  for (int s = 0; s < 3; s++) assert_int_equal(msr_sink_close(&sinks[s], NULL), MSR_OK);
+  for (int s = 0; s < 3; s++) must(msr_sink_close(&sinks[s], &why));
   const size_t frames = 5; // at iterations 0, 3, 7, 11, 14
   assert_trajectory(path_of("t.npy"), frames);
   read_file(path_of("s.csv"), text);
@@ -506,11 +458,11 @@ static void a_pipe_is_left_as_it_is(void **unused) {
   assert_int_equal(pipe(ends), 0);
   snprintf(path, sizeof path, "/dev/fd/%d", ends[1]);
   msr_sink sink;
-  assert_int_equal(msr_trajectory_open(plan, path, &sink, NULL), MSR_OK);
+  must(msr_trajectory_open(plan, path, &sink, &why));
   msr_state *state = new_state(plan);
   const msr_run_options options = {&sink, 1, count_down, &left};
   assert_int_equal(msr_run(state, &options, NULL), MSR_EINTR);
-  assert_int_equal(msr_sink_close(&sink, NULL), MSR_OK);
+  must(msr_sink_close(&sink, &why));
   msr_state_free(state);
   close(ends[1]);
   const ssize_t size = read(ends[0], bytes, sizeof bytes);
@@ -552,8 +504,8 @@ static void sinks_with_nowhere_to_go(void **unused) {
   assert_null(sink.write);
   msr_scene *scene;
   msr_plan *blank;
-  assert_int_equal(msr_scene_create(&scene, NULL), MSR_OK);
-  assert_int_equal(msr_plan_create(scene, NULL, &blank, NULL), MSR_OK);
+  must(msr_scene_create(&scene, &why));
+  must(msr_plan_create(scene, NULL, &blank, &why));
   assert_int_equal(msr_frames_open(blank, path_of("a"), NULL, false, &sink, &err), MSR_EUSAGE);
   assert_string_equal(err.message, "a scene without a picture has no frames");
   assert_false(exists(path_of("a")));
@@ -583,26 +535,28 @@ static void my_sinks_see_every_frame(void **unused) {
   witness a = {0}, b = {0};
   const msr_sink sinks[] = {{&a, see, NULL}, {&b, see, NULL}};
   msr_state *state = new_state(plan);
-  assert_int_equal(msr_run(state, &(msr_run_options){.sinks = sinks, .n_sinks = 2}, NULL), MSR_OK);
+  must(msr_run(state, &(msr_run_options){.sinks = sinks, .n_sinks = 2}, &why));
   assert_int_equal(msr_state_iteration(state), ITERATIONS);
   assert_true(msr_state_view(state).t == ITERATIONS * 0.02);
   assert_int_equal(a.frames, FRAMES);
   for (size_t i = 0; i < FRAMES; i++) assert_true(a.frame[i] == i && a.hash[i] == due.hash[i]);
   assert_memory_equal(&a, &b, sizeof a);
   // what is at its end has nothing more to show
-  assert_int_equal(msr_run(state, &(msr_run_options){.sinks = sinks, .n_sinks = 2}, NULL), MSR_OK);
+  must(msr_run(state, &(msr_run_options){.sinks = sinks, .n_sinks = 2}, &why));
   assert_int_equal(a.frames, FRAMES);
   msr_state_free(state);
   msr_sink mine = sinks[0];
-  assert_int_equal(msr_sink_close(&mine, NULL), MSR_OK); // no close of its own
+  must(msr_sink_close(&mine, &why)); // no close of its own
 }
 
 static void a_failing_sink_stops_the_run(void **unused) {
   (void)unused;
   witness a = {.failing = 4}, b = {0};
   const msr_sink sinks[] = {{&a, see, NULL}, {&b, see, NULL}};
+  msr_error err = {.message = ""};
   msr_state *state = new_state(plan);
-  assert_int_equal(msr_run(state, &(msr_run_options){.sinks = sinks, .n_sinks = 2}, NULL), MSR_EIO);
+  assert_int_equal(msr_run(state, &(msr_run_options){.sinks = sinks, .n_sinks = 2}, &err), MSR_EIO);
+  assert_string_equal(err.message, "frame 3: input or output failed");
   assert_true(a.frames == 4 && b.frames == 3);
   assert_int_equal(msr_state_iteration(state), 3 * ITERATIONS / FRAMES);
   msr_state_free(state);
@@ -614,7 +568,7 @@ static void a_run_goes_on_where_it_was_stopped(void **unused) {
   (void)unused;
   const uint64_t substeps = ITERATIONS * msr_plan_describe(plan).substeps;
   msr_state *whole = new_state(plan);
-  assert_int_equal(msr_run(whole, NULL, NULL), MSR_OK);
+  must(msr_run(whole, NULL, &why));
   for (uint64_t stop = 0; stop < substeps; stop++) {
     witness w = {0};
     const msr_sink sink = {&w, see, NULL};
@@ -623,8 +577,7 @@ static void a_run_goes_on_where_it_was_stopped(void **unused) {
     const msr_run_options options = {&sink, 1, count_down, &left};
     assert_int_equal(msr_run(state, &options, NULL), MSR_EINTR);
     assert_int_equal(msr_state_iteration(state), stop / msr_plan_describe(plan).substeps);
-    assert_int_equal(msr_run(state, &(msr_run_options){.sinks = &sink, .n_sinks = 1}, NULL),
-                     MSR_OK);
+    must(msr_run(state, &(msr_run_options){.sinks = &sink, .n_sinks = 1}, &why));
     assert_true(msr_state_hash(state) == msr_state_hash(whole));
     assert_int_equal(msr_state_contacts(state), msr_state_contacts(whole));
     assert_int_equal(w.frames, FRAMES);
@@ -675,7 +628,7 @@ static void a_run_of_no_iteration_shows_the_scene(void **unused) {
   const msr_sink sink = {&w, see, NULL};
   msr_plan *still = plan_of(0, 1);
   msr_state *state = new_state(still);
-  assert_int_equal(msr_run(state, &(msr_run_options){.sinks = &sink, .n_sinks = 1}, NULL), MSR_OK);
+  must(msr_run(state, &(msr_run_options){.sinks = &sink, .n_sinks = 1}, &why));
   assert_int_equal(w.frames, 1);
   assert_true(w.hash[0] == due.hash[0]);
   msr_state_free(state);

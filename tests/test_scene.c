@@ -1,56 +1,13 @@
 /* test_scene.c - scenes from pictures, from files and by hand: what is accepted, what is refused
  * and with which words, and that a call that fails leaves the scene as it was. */
-#include "msr.h"
-
-#include <float.h>
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
-
-#include <cmocka.h>
-
-#define LENGTH(array) (sizeof(array) / sizeof *(array))
-#define NO_NUMBER     ((double)NAN)
-#define INFINITE      ((double)INFINITY)
+#include "art.h"
+#include "files.h"
 
 static const msr_conf usual = {0.005, 9.8, 0.1, 1500, 8, 2};
 
-/* '.' air, '#' support, 'o' red; each row ends in a line feed. */
-static msr_picture *paint(const char *art) {
-  const size_t width = strcspn(art, "\n"), height = strlen(art) / (width + 1);
-  msr_picture *picture;
-  assert_int_equal(msr_picture_create(width, height, &picture, NULL), MSR_OK);
-  for (size_t p = 0; p < width * height; p++) {
-    const char letter = art[p + p / width];
-    unsigned char *rgb = picture->rgb + 3 * p;
-    if (letter != '.') rgb[1] = rgb[2] = 0;
-    if (letter == '#') rgb[0] = 0;
-  }
-  return picture;
-}
-
-static msr_scene *scene_of(const char *art) {
-  msr_picture *picture = paint(art);
-  msr_scene *scene;
-  assert_int_equal(msr_scene_from_picture("art", picture, &usual, NULL, &scene, NULL), MSR_OK);
-  msr_picture_free(picture);
-  return scene;
-}
-
-static msr_scene *empty_scene(void) {
-  msr_scene *scene;
-  assert_int_equal(msr_scene_create(&scene, NULL), MSR_OK);
-  return scene;
-}
-
 static msr_plan *plan_of(const msr_scene *scene) {
   msr_plan *plan;
-  assert_int_equal(msr_plan_create(scene, NULL, &plan, NULL), MSR_OK);
+  must(msr_plan_create(scene, NULL, &plan, &why));
   return plan;
 }
 
@@ -63,17 +20,17 @@ static void masses_are_in_reading_order(void **unused) {
     size_t column, row;
     double x, y;
   } due[] = {{3, 0, 3.5, 2.5}, {0, 1, 0.5, 1.5}, {2, 1, 2.5, 1.5}, {1, 2, 1.5, 0.5}};
-  msr_scene *scene = scene_of("...o\no.o.\n#o.#\n");
+  msr_scene *scene = scene_of("...o\no.o.\n#o.#\n", &usual, NULL);
   assert_int_equal(msr_scene_masses(scene), 4);
   for (size_t i = 0; i < LENGTH(due); i++) {
     size_t index = 99;
-    assert_int_equal(msr_scene_mass_at(scene, due[i].column, due[i].row, &index, NULL), MSR_OK);
+    must(msr_scene_mass_at(scene, due[i].column, due[i].row, &index, &why));
     assert_int_equal(index, i);
   }
   msr_plan *plan = plan_of(scene);
   msr_scene_free(scene); // a plan needs it no more
   msr_state *state;
-  assert_int_equal(msr_state_create(plan, &state, NULL), MSR_OK);
+  must(msr_state_create(plan, &state, &why));
   const msr_view view = msr_state_view(state);
   assert_int_equal(view.n, 4);
   assert_true(view.t == 0 && view.m_stride == 0 && view.m[0] == 0.1);
@@ -97,7 +54,7 @@ static void no_mass_where_there_is_none(void **unused) {
       {0, 1, "pixel (0,1) is outside the picture of 3 x 1"},
       {SIZE_MAX, 0, "pixel (18446744073709551615,0) is outside the picture of 3 x 1"},
   };
-  msr_scene *scene = scene_of(".o#\n");
+  msr_scene *scene = scene_of(".o#\n", &usual, NULL);
   msr_error err;
   for (size_t i = 0; i < LENGTH(cases); i++) {
     size_t index = 99;
@@ -108,7 +65,7 @@ static void no_mass_where_there_is_none(void **unused) {
     assert_int_equal(index, 99);
   }
   msr_scene_free(scene);
-  scene = empty_scene();
+  scene = empty_scene(0.005);
   size_t index;
   assert_int_equal(msr_scene_mass_at(scene, 0, 0, &index, &err), MSR_EUSAGE);
   assert_string_equal(err.message, "pixel (0,0) is outside the picture of 0 x 0");
@@ -159,6 +116,9 @@ static void the_first_unclear_pixel_is_named(void **unused) {
                    MSR_EINPUT);
   assert_non_null(strstr(err.message, "pixel (2,1) is 128,129,130"));
   assert_non_null(strstr(err.message, "(2 such pixels in all)"));
+  assert_int_equal(msr_scene_from_picture("a\tb\n.ppm", picture, &usual, NULL, &scene, &err),
+                   MSR_EINPUT);
+  assert_int_equal(strncmp(err.message, "a?b?.ppm:2:3: ", 14), 0); // one line, whatever the name
   assert_null(scene);
   msr_picture_free(picture);
 }
@@ -208,35 +168,6 @@ static void options_and_conf_out_of_range_are_refused(void **unused) {
 
 /* ---- From files */
 
-static char directory[256];
-
-static int make_directory(void **unused) {
-  (void)unused;
-  const char *root = getenv("TMPDIR");
-  snprintf(directory, sizeof directory, "%s/msr-scene-XXXXXX", root ? root : "/tmp");
-  return mkdtemp(directory) ? 0 : -1;
-}
-
-static int remove_directory(void **unused) {
-  (void)unused;
-  return rmdir(directory);
-}
-
-static const char *path_of(const char *name) {
-  static char paths[2][300];
-  static size_t turn;
-  turn = 1 - turn;
-  snprintf(paths[turn], sizeof paths[turn], "%s/%s", directory, name);
-  return paths[turn];
-}
-
-static void write_file(const char *name, const char *text) {
-  FILE *file = fopen(path_of(name), "w");
-  assert_non_null(file);
-  assert_true(fputs(text, file) >= 0);
-  assert_int_equal(fclose(file), 0);
-}
-
 static const char conf_text[] = "DT\n0.005\nGRAVITE\n9.8\nMASSE\n0.1\nTENSION_RESSORT\n1500\n"
                                 "NB_ITERATIONS\n8\nNB_IMAGES\n2\n";
 #define RED_AND_AIR "P3 2 1 255\n255 0 0  255 255 255\n"
@@ -260,8 +191,8 @@ static void files_are_loaded(void **unused) {
   for (size_t i = 0; i < LENGTH(cases); i++) {
     msr_scene *scene = NULL;
     msr_error err;
-    if (cases[i].ppm) write_file("s.ppm", cases[i].ppm);
-    if (cases[i].conf) write_file("s.conf", cases[i].conf);
+    if (cases[i].ppm) write_file(path_of("s.ppm"), cases[i].ppm);
+    if (cases[i].conf) write_file(path_of("s.conf"), cases[i].conf);
     const msr_status status =
         msr_scene_load(path_of("s.ppm"), path_of("s.conf"), NULL, &scene, &err);
     remove(path_of("s.ppm"));
@@ -284,9 +215,8 @@ static void files_are_loaded(void **unused) {
 
 /* Two masses of a picture, and one added. */
 static msr_scene *three_masses(void) {
-  msr_scene *scene = scene_of("oo.#\n....\n");
-  assert_int_equal(msr_scene_add_mass(scene, &(msr_mass){.x = 2.5, .y = 0.5, .m = 1}, NULL, NULL),
-                   MSR_OK);
+  msr_scene *scene = scene_of("oo.#\n....\n", &usual, NULL);
+  must(msr_scene_add_mass(scene, &(msr_mass){.x = 2.5, .y = 0.5, .m = 1}, NULL, &why));
   return scene;
 }
 
@@ -341,10 +271,30 @@ static void bad_masses_are_refused(void **unused) {
   static const double beside[][2] = {{4, 1.5}, {3.5, 2}, {3.5, 0.999}, {2.999, 1.5}, {1e300, 0}};
   for (size_t i = 0; i < LENGTH(beside); i++) {
     const msr_mass mass = {.x = beside[i][0], .y = beside[i][1], .m = 1};
-    assert_int_equal(msr_scene_add_mass(scene, &mass, &index, NULL), MSR_OK);
+    must(msr_scene_add_mass(scene, &mass, &index, &why));
     assert_int_equal(index, 3 + i);
   }
   msr_scene_free(scene);
+}
+
+/* A pixel owns its lower and left edges, so that the picture owns its own. */
+static void masses_beyond_a_closed_border_are_refused(void **unused) {
+  (void)unused;
+  static const double beyond[][2] = {{4, 0.5}, {-0.001, 0.5}, {0.5, 2}, {0.5, -0.001}, {9, 9}};
+  static const double within[][2] = {{0, 0}, {3.999, 1.999}};
+  for (int closed = 0; closed < 2; closed++) {
+    msr_scene *scene = scene_of("oo..\n....\n", &usual, &(msr_scene_options){0, false, closed});
+    for (size_t i = 0; i < LENGTH(beyond); i++) {
+      const msr_mass mass = {.x = beyond[i][0], .y = beyond[i][1], .m = 1};
+      msr_error err = {.message = ""};
+      assert_int_equal(msr_scene_add_mass(scene, &mass, NULL, &err), closed ? MSR_EUSAGE : MSR_OK);
+      if (closed) assert_non_null(strstr(err.message, ") is inside a support"));
+    }
+    for (size_t i = 0; i < LENGTH(within); i++)
+      add_mass(scene, within[i][0], within[i][1], 0, 0, 1);
+    assert_int_equal(msr_scene_masses(scene), closed ? 4 : 9);
+    msr_scene_free(scene);
+  }
 }
 
 static void bad_springs_and_anchors_are_refused(void **unused) {
@@ -484,26 +434,25 @@ static void errors_may_be_ignored(void **unused) {
 
 static void a_scene_from_c(void **unused) {
   (void)unused;
-  msr_scene *scene = empty_scene();
+  msr_scene *scene = empty_scene(0.005);
   size_t index;
   for (size_t i = 0; i < 20; i++) {
     const msr_mass mass = {.x = (double)i, .y = 7, .vx = 1, .vy = -(double)i, .m = 1 + (double)i};
-    assert_int_equal(msr_scene_add_mass(scene, &mass, &index, NULL), MSR_OK);
+    must(msr_scene_add_mass(scene, &mass, &index, &why));
     assert_int_equal(index, i);
     assert_int_equal(msr_scene_masses(scene), i + 1);
   }
-  for (size_t i = 19; i > 0; i--)
-    assert_int_equal(msr_scene_add_spring(scene, i, i - 1, (double)i, 1, NULL), MSR_OK);
-  assert_int_equal(msr_scene_add_spring(scene, 0, 19, 5, 19, NULL), MSR_OK);
-  assert_int_equal(msr_scene_add_spring(scene, 3, 4, 7, 2, NULL), MSR_OK); // a second one
-  assert_int_equal(msr_scene_add_anchor(scene, &(msr_anchor){5, 5, 9, 3, 1}, NULL), MSR_OK);
+  for (size_t i = 19; i > 0; i--) must(msr_scene_add_spring(scene, i, i - 1, (double)i, 1, &why));
+  must(msr_scene_add_spring(scene, 0, 19, 5, 19, &why));
+  must(msr_scene_add_spring(scene, 3, 4, 7, 2, &why)); // a second one
+  must(msr_scene_add_anchor(scene, &(msr_anchor){5, 5, 9, 3, 1}, &why));
   msr_plan *plan = plan_of(scene);
   msr_scene_free(scene);
   const msr_plan_figures f = msr_plan_describe(plan);
   assert_true(f.masses == 20 && f.springs == 21 && f.anchors == 1);
   assert_true(f.dt == 0.005 && f.iterations == 1 && f.images == 1 && f.width == 0);
   msr_state *state;
-  assert_int_equal(msr_state_create(plan, &state, NULL), MSR_OK);
+  must(msr_state_create(plan, &state, &why));
   const msr_view s = msr_state_view(state);
   assert_int_equal(s.m_stride, 1);
   for (size_t i = 0; i < 20; i++) {
@@ -513,7 +462,7 @@ static void a_scene_from_c(void **unused) {
   // all springs are at rest but the second one (1 px too short) and the anchor (1 px too long)
   assert_true(msr_state_energy(state).spring == 7.0 / 2 + 3.0 / 2);
   double fx[20], fy[20];
-  assert_int_equal(msr_state_forces(state, fx, fy, NULL), MSR_OK);
+  must(msr_state_forces(state, fx, fy, &why));
   for (size_t i = 0; i < 20; i++) {
     assert_true(fx[i] == (i == 3 ? -7 : i == 4 ? 7 : 0));
     assert_true(fy[i] == (i == 5 ? 3 : 0));
@@ -525,23 +474,21 @@ static void a_scene_from_c(void **unused) {
 /* What is added after the picture's masses comes after them, with a mass of its own. */
 static void a_picture_and_more(void **unused) {
   (void)unused;
-  msr_scene *scene = scene_of("oo..\n");
+  msr_scene *scene = scene_of("oo..\n", &usual, NULL);
   size_t index;
-  assert_int_equal(
-      msr_scene_add_mass(scene, &(msr_mass){.x = 2.5, .y = 0.5, .m = 0.1}, &index, NULL), MSR_OK);
+  must(msr_scene_add_mass(scene, &(msr_mass){.x = 2.5, .y = 0.5, .m = 0.1}, &index, &why));
   assert_int_equal(index, 2);
-  assert_int_equal(msr_scene_add_spring(scene, 1, 2, 1500, 1, NULL), MSR_OK);
+  must(msr_scene_add_spring(scene, 1, 2, 1500, 1, &why));
   msr_plan *same = plan_of(scene);
-  assert_int_equal(msr_scene_add_mass(scene, &(msr_mass){.x = 3.5, .y = 0.5, .m = 3}, &index, NULL),
-                   MSR_OK);
+  must(msr_scene_add_mass(scene, &(msr_mass){.x = 3.5, .y = 0.5, .m = 3}, &index, &why));
   msr_plan *mixed = plan_of(scene);
   msr_scene_free(scene);
   assert_int_equal(msr_plan_describe(same).springs, 2);
   msr_state *state;
-  assert_int_equal(msr_state_create(same, &state, NULL), MSR_OK);
+  must(msr_state_create(same, &state, &why));
   assert_int_equal(msr_state_view(state).m_stride, 0); // all equal: one number for all
   msr_state_free(state);
-  assert_int_equal(msr_state_create(mixed, &state, NULL), MSR_OK);
+  must(msr_state_create(mixed, &state, &why));
   const msr_view view = msr_state_view(state);
   assert_true(msr_view_mass(&view, 0) == 0.1 && msr_view_mass(&view, 3) == 3);
   msr_state_free(state);
@@ -557,24 +504,15 @@ static void small_scenes_run_to_the_end(void **unused) {
                                      "##\n",  "#o#\n", "o\n#\n",     ".o.#.oo.\n", "o\n.\n#\no\n",
                                      "...\n", "#.#\n", "oooooooo\n", ".o\n#o\n"};
   for (size_t a = 0; a < 4 * LENGTH(arts); a++) {
-    msr_picture *picture = paint(arts[a / 4]);
     const msr_scene_options options = {a % 2 ? 8 : 4, a & 2, a & 2};
-    msr_scene *scene;
-    msr_plan *plan;
-    msr_state *state;
+    const world w = open_world(scene_of(arts[a / 4], &usual, &options), NULL, 0);
     msr_sink sink;
-    assert_int_equal(msr_scene_from_picture("p", picture, &usual, &options, &scene, NULL), MSR_OK);
-    msr_picture_free(picture);
-    assert_int_equal(msr_plan_create(scene, NULL, &plan, NULL), MSR_OK);
-    msr_scene_free(scene);
-    assert_int_equal(msr_state_create(plan, &state, NULL), MSR_OK);
-    assert_int_equal(msr_frames_open(plan, path_of("out"), NULL, true, &sink, NULL), MSR_OK);
+    must(msr_frames_open(w.plan, path_of("out"), NULL, true, &sink, &why));
     const msr_run_options run = {.sinks = &sink, .n_sinks = 1};
-    assert_int_equal(msr_run(state, &run, NULL), MSR_OK);
-    assert_int_equal(msr_sink_close(&sink, NULL), MSR_OK);
-    assert_int_equal(msr_state_iteration(state), usual.iterations);
-    msr_state_free(state);
-    msr_plan_free(plan);
+    must(msr_run(w.state, &run, &why));
+    must(msr_sink_close(&sink, &why));
+    assert_int_equal(msr_state_iteration(w.state), usual.iterations);
+    close_world(w);
     assert_int_equal(remove(path_of("out/frame-000000.ppm")), 0);
     assert_int_equal(remove(path_of("out/frame-000001.ppm")), 0);
     assert_int_equal(rmdir(path_of("out")), 0);
@@ -590,6 +528,7 @@ int main(void) {
       cmocka_unit_test(options_and_conf_out_of_range_are_refused),
       cmocka_unit_test(files_are_loaded),
       cmocka_unit_test(bad_masses_are_refused),
+      cmocka_unit_test(masses_beyond_a_closed_border_are_refused),
       cmocka_unit_test(bad_springs_and_anchors_are_refused),
       cmocka_unit_test(bad_forces_are_refused),
       cmocka_unit_test(bad_settings_are_refused),

@@ -224,14 +224,14 @@ static void air_varies_everywhere(void **state) {
 static vector felt(const msr_integrator *integrator, uint64_t substeps) {
   msr_scene *scene = empty_scene(0.1);
   add_mass(scene, 0, 0, 3, 1, 0.7);
-  must(msr_scene_add_force(scene, &msr_force_wind, &gusty, &why));
+  add_force(scene, &msr_force_wind, &gusty);
   world w = open_world(scene, integrator, substeps);
   vector f;
   advance(&w, 10);
   must(msr_state_forces(w.state, &f.x, &f.y, &why));
   const msr_view s = msr_state_view(w.state);
   const vector found = {f.x + s.vx[0], f.y + s.vy[0]};
-  close_world(&w);
+  close_world(w);
   return found;
 }
 
@@ -254,14 +254,14 @@ static void all_integrators_feel_one_wind(void **state) {
 static vector run_in(const msr_wind *wind, size_t *drawn) {
   msr_scene *scene = empty_scene(0.01);
   add_mass(scene, 0, 0, 3, 1, 0.7);
-  if (wind) must(msr_scene_add_force(scene, &msr_force_wind, wind, &why));
+  if (wind) add_force(scene, &msr_force_wind, wind);
   const size_t before = seedings;
   world w = open_world(scene, NULL, 0);
   advance(&w, 100);
   *drawn = seedings - before;
   const msr_view s = msr_state_view(w.state);
   const vector v = {s.vx[0], s.vy[0]};
-  close_world(&w);
+  close_world(w);
   return v;
 }
 
