@@ -1,5 +1,6 @@
 /* drag.c - drag of air at rest: F = -c v. Its flow is exact: v exp(-c h / m). */
-#include "base/base.h"
+#include "forces/air.h"
+
 #include "base/number.h"
 
 #include <math.h>
@@ -22,33 +23,26 @@ static void describe(const void *params, const msr_view *s, char *text, size_t s
   msri_format(text, size, "asked for: c = %g kg/s", ((const msr_drag *)params)->c);
 }
 
+static msri_air still(const void *self) { return (msri_air){((const msr_drag *)self)->c, 0, 0}; }
+
 static msr_status add(const void *self, void *scratch, const msr_view *s, double *fx, double *fy) {
   (void)scratch;
-  const double c = ((const msr_drag *)self)->c;
-  for (size_t i = 0; i < s->n; i++) {
-    fx[i] -= c * s->vx[i];
-    fy[i] -= c * s->vy[i];
-  }
+  const msri_air air = still(self);
+  msri_air_add(&air, s, fx, fy);
   return MSR_OK;
 }
 
 static msr_status flow(const void *self, void *scratch, const msr_view *s, double h, bool backward,
                        double *vx, double *vy) {
   (void)scratch, (void)backward;
-  const double ch = ((const msr_drag *)self)->c * h;
-  double keep = s->n ? exp(-ch / s->m[0]) : 1;
-  for (size_t i = 0; i < s->n; i++) {
-    if (s->m_stride) keep = exp(-ch / s->m[i]);
-    vx[i] *= keep;
-    vy[i] *= keep;
-  }
+  const msri_air air = still(self);
+  msri_air_flow(&air, s, h, vx, vy);
   return MSR_OK;
 }
 
 static msr_status rates(const void *self, const msr_view *s, double *omega2, double *gamma) {
   (void)omega2;
-  for (size_t i = 0; i < s->n; i++)
-    *gamma = msri_max(*gamma, ((const msr_drag *)self)->c / msr_view_mass(s, i));
+  *gamma = msri_air_rate(((const msr_drag *)self)->c, s);
   return MSR_OK;
 }
 

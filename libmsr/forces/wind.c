@@ -2,6 +2,7 @@
  *
  * Its flow is exact while w is held: v tends to w as exp(-c h / m). With no gusts, no random number
  * is ever drawn. */
+#include "forces/air.h"
 #include "forces/noise.h"
 
 #include "base/number.h"
@@ -70,43 +71,31 @@ static msr_status prepare(const void *params, const msr_view *s, void **self, ms
   return MSR_OK;
 }
 
-/* The air's velocity at time t. */
-static void air(const wind *w, void *scratch, double t, double *x, double *y) {
-  *x = *y = 0;
-  if (w->gusts) msri_noise_at(&w->noise, scratch, t, x, y);
-  *x += w->speed;
+/* The air at time t. */
+static msri_air air_at(const wind *w, void *scratch, double t) {
+  msri_air air = {w->c, 0, 0};
+  if (w->gusts) msri_noise_at(&w->noise, scratch, t, &air.ax, &air.ay);
+  air.ax += w->speed;
+  return air;
 }
 
 static msr_status add(const void *self, void *scratch, const msr_view *s, double *fx, double *fy) {
-  const wind *w = self;
-  double ax, ay;
-  air(w, scratch, s->t, &ax, &ay);
-  for (size_t i = 0; i < s->n; i++) {
-    fx[i] += w->c * (ax - s->vx[i]);
-    fy[i] += w->c * (ay - s->vy[i]);
-  }
+  const msri_air air = air_at(self, scratch, s->t);
+  msri_air_add(&air, s, fx, fy);
   return MSR_OK;
 }
 
 static msr_status flow(const void *self, void *scratch, const msr_view *s, double h, bool backward,
                        double *vx, double *vy) {
   (void)backward;
-  const wind *w = self;
-  double ax, ay;
-  air(w, scratch, s->t, &ax, &ay);
-  double keep = exp(-w->c * h / s->m[0]);
-  for (size_t i = 0; i < s->n; i++) {
-    if (s->m_stride) keep = exp(-w->c * h / s->m[i]);
-    vx[i] = ax + (vx[i] - ax) * keep;
-    vy[i] = ay + (vy[i] - ay) * keep;
-  }
+  const msri_air air = air_at(self, scratch, s->t);
+  msri_air_flow(&air, s, h, vx, vy);
   return MSR_OK;
 }
 
 static msr_status rates(const void *self, const msr_view *s, double *omega2, double *gamma) {
   (void)omega2;
-  for (size_t i = 0; i < s->n; i++)
-    *gamma = msri_max(*gamma, ((const wind *)self)->c / msr_view_mass(s, i));
+  *gamma = msri_air_rate(((const wind *)self)->c, s);
   return MSR_OK;
 }
 

@@ -6,6 +6,9 @@
 
 #include <stdio.h>
 
+/* MSR_ENOMEM. */
+msr_status msri_picture_copy(const msr_picture *picture, msr_picture **copy, msr_error *err);
+
 enum { MSRI_PPM_HEADER_SIZE = 64 };
 
 /* Writes the P6 header of a picture, and returns its length: a frame is this, then rgb. */

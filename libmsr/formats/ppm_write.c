@@ -29,6 +29,12 @@ void msr_picture_free(msr_picture *picture) {
   free(picture);
 }
 
+msr_status msri_picture_copy(const msr_picture *picture, msr_picture **copy, msr_error *err) {
+  const msr_status status = msr_picture_create(picture->width, picture->height, copy, err);
+  if (status == MSR_OK) memcpy((*copy)->rgb, picture->rgb, 3 * picture->width * picture->height);
+  return status;
+}
+
 size_t msri_ppm_header(const msr_picture *picture, char text[MSRI_PPM_HEADER_SIZE]) {
   return (size_t)msri_format(text, MSRI_PPM_HEADER_SIZE, "P6\n%zu %zu\n255\n", picture->width,
                              picture->height);

@@ -4,7 +4,7 @@
 #include "plan/plan.h"
 
 #include "base/number.h"
-#include "base/pixel.h"
+#include "formats/ppm.h"
 #include "plan/state.h"
 
 #include <stdlib.h>
@@ -13,13 +13,9 @@
 /* ---- Masses */
 
 static msr_status copy_picture(msr_plan *plan, const msr_picture *picture, msr_error *err) {
-  const msr_status status =
-      msr_picture_create(picture->width, picture->height, &plan->picture, err);
-  if (status != MSR_OK) return status;
-  memcpy(plan->picture->rgb, picture->rgb, 3 * picture->width * picture->height);
   plan->figures.width = picture->width;
   plan->figures.height = picture->height;
-  return MSR_OK;
+  return msri_picture_copy(picture, &plan->picture, err);
 }
 
 /* Are all masses equal? Then the plan keeps one number for them all. */

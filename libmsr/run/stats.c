@@ -17,6 +17,7 @@ static msr_status take(void *self, const msr_state *state, uint64_t frame, msr_e
   stats *s = self;
   const msr_energy e = msr_state_energy(state);
   const uint64_t contacts = msr_state_contacts(state);
+  if (s->frames == 0) s->contacts = contacts;
   const double value[] = {
       msr_state_view(state).t, e.kinetic, e.spring, e.gravity, e.total, e.px, e.py};
   char text[MSRI_NUMBER_SIZE];

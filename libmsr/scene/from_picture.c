@@ -3,8 +3,7 @@
 
 #include "base/pixel.h"
 #include "formats/conf.h"
-
-#include <string.h>
+#include "formats/ppm.h"
 
 /* Counts masses and supports; the first pixel that is neither, nor air, is an error. */
 static msr_status classify(msr_scene *scene, const char *name, const msr_picture *picture,
@@ -68,9 +67,8 @@ msr_status msr_scene_from_picture(const char *name, const msr_picture *picture,
                                   const msr_conf *conf, const msr_scene_options *options,
                                   msr_scene **scene, msr_error *err) {
   msr_picture *copy;
-  const msr_status status = msr_picture_create(picture->width, picture->height, &copy, err);
+  const msr_status status = msri_picture_copy(picture, &copy, err);
   if (status != MSR_OK) return status;
-  memcpy(copy->rgb, picture->rgb, 3 * picture->width * picture->height);
   return adopt(name, copy, conf, options, scene, err);
 }
 
