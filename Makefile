@@ -192,7 +192,8 @@ format: | $(FIRST)
 ## coverage: lines of libmsr/ that the tests reach; at least 95 %
 coverage: | $(FIRST)
 	@find build/coverage -name '*.gcda' -delete 2>/dev/null || true
-	$(MAKE) BUILD=build/coverage CC=gcc CFLAGS='-O0 -g --coverage' CHECKS= test
+	COVERAGE=1 $(MAKE) BUILD=build/coverage CC=gcc \
+	  CFLAGS='-O0 -g --coverage -fprofile-update=atomic' CHECKS= test
 	gcovr --root . --filter libmsr/ --fail-under-line 95 build/coverage
 
 ## fuzz SECONDS=60: each fuzzer for so long, on a copy of its corpus
