@@ -496,6 +496,38 @@ static void my_driving_force_is_followed(void **unused) {
   close_world(failing);
 }
 
+static msr_status odd_rates(const void *self, const msr_view *s, double *omega2, double *gamma) {
+  (void)s;
+  *omega2 = *gamma = *(const double *)self;
+  return MSR_OK;
+}
+
+static msr_status add_no_force(const void *self, void *scratch, const msr_view *s, double *fx,
+                               double *fy) {
+  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
+  return MSR_OK;
+}
+
+/* A bound that is no number would give no stable step. */
+static void rates_are_numbers(void **unused) {
+  (void)unused;
+  static const msr_force odd = {.name = "odd",
+                                .summary = "has no rates",
+                                .params_size = sizeof(double),
+                                .add = add_no_force,
+                                .rates = odd_rates};
+  const double rates[] = {-1, (double)NAN};
+  for (size_t i = 0; i < LENGTH(rates); i++) {
+    msr_scene *scene = with(plain(), &odd, &rates[i]);
+    msr_plan *plan = NULL;
+    msr_error err;
+    assert_int_equal(msr_plan_create(scene, NULL, &plan, &err), MSR_EUSAGE);
+    assert_non_null(strstr(err.message, "force odd: rates must be numbers of 0 or more"));
+    assert_null(plan);
+    msr_scene_free(scene);
+  }
+}
+
 static msr_status add_sway(const void *self, void *scratch, const msr_view *s, double *fx,
                            double *fy) {
   (void)self, (void)scratch, (void)fy;
@@ -537,6 +569,7 @@ int main(void) {
       cmocka_unit_test(my_idle_force_costs_nothing),
       cmocka_unit_test(my_status_comes_back),
       cmocka_unit_test(my_driving_force_is_followed),
+      cmocka_unit_test(rates_are_numbers),
       cmocka_unit_test(only_calls_to_step_are_counted),
   };
   return cmocka_run_group_tests_name("effects", tests, NULL, NULL);
