@@ -13,22 +13,21 @@ typedef struct progress {
 } progress;
 
 /* How far a run came that was stopped: "after 1 of 3 frames, which is whole". */
-static progress progress_of(const watch *w, const char *quality) {
+static progress progress_of(const watch *w) {
   progress p = {"before any frame"};
   if (w->frames == 0) return p;
-  snprintf(p.text, sizeof p.text, "after %" PRIu64 " of %" PRIu64 " frame%s, which %s %s",
-           w->frames, w->plan.images, w->plan.images == 1 ? "" : "s", w->frames == 1 ? "is" : "are",
-           quality);
+  snprintf(p.text, sizeof p.text, "after %" PRIu64 " of %" PRIu64 " frame%s, which %s whole",
+           w->frames, w->plan.images, w->plan.images == 1 ? "" : "s",
+           w->frames == 1 ? "is" : "are");
   return p;
 }
 
 /* What stopped a run, and how far it had come. */
 static msr_status explain(const watch *w, msr_status status, msr_error *err) {
   const size_t length = strlen(err->message);
-  if (status == MSR_EINTR) return fail(err, status, "interrupted %s", progress_of(w, "whole").text);
+  if (status == MSR_EINTR) return fail(err, status, "interrupted %s", progress_of(w).text);
   if (status == MSR_EUNSTABLE) {
-    snprintf(err->message + length, sizeof err->message - length, " (%s)",
-             progress_of(w, "sound").text);
+    snprintf(err->message + length, sizeof err->message - length, " (%s)", progress_of(w).text);
   }
   return status;
 }
