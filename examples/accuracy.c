@@ -34,7 +34,8 @@ static double simulate(const msr_scene *scene, const msr_integrator *method, uin
                        double *x) {
   msr_plan *plan;
   msr_state *state;
-  check(msr_plan_create(scene, &(msr_plan_options){method, substeps}, &plan, &err));
+  check(msr_plan_create(scene, &(msr_plan_options){.integrator = method, .substeps = substeps},
+                        &plan, &err));
   check(msr_state_create(plan, &state, &err));
   const clock_t start = clock();
   check(msr_state_step(state, ITERATIONS, &err));

@@ -37,7 +37,8 @@ int main(void) {
   for (size_t i = 0; msr_integrators[i]; i++) {
     msr_plan *plan;
     msr_state *state;
-    check(msr_plan_create(scene, &(msr_plan_options){msr_integrators[i], 0}, &plan, &err));
+    check(msr_plan_create(
+        scene, &(msr_plan_options){.integrator = msr_integrators[i], .substeps = 0}, &plan, &err));
     check(msr_state_create(plan, &state, &err));
     const double start = msr_state_energy(state).total;
     double least = 1, most = 1;

@@ -8,19 +8,20 @@
 
 /* Drifts and kicks in turn; both rows read the same backwards, hence the method is reversible. */
 static msr_status step(const msr_integrator *self, const msr_system *s,
-                       const msr_interval *interval, double *q, double *v, double *a) {
+                       const msr_interval *interval, double *q, double *v, msr_workspace *work,
+                       msr_error *err) {
   static const double x = 0.1786178958448091, l = -0.2123418310626054, c = -0.06626458266981849;
   const double drifts[] = {x, c, 1 - 2 * (c + x), c, x}, kicks[] = {0.5 - l, l, l, 0.5 - l};
-  double share = 0;
-  (void)self;
+  double *a = work->vector, share = 0;
+  (void)self, (void)err;
   for (int k = 0; k < 4; k++) {
-    msr_status status = msr_system_drift(s, drifts[k] * interval->h, v, q, v);
+    msr_status status = msr_system_drift(s, drifts[k] * interval->h, v, NULL, q, v);
     const double t = msr_interval_time(interval, share += drifts[k]);
     if (status == MSR_OK) status = s->acceleration(s->self, t, q, v, a);
     if (status != MSR_OK) return status;
     for (size_t i = 0; i < s->n; i++) v[i] += kicks[k] * interval->h * a[i];
   }
-  return msr_system_drift(s, drifts[4] * interval->h, v, q, v);
+  return msr_system_drift(s, drifts[4] * interval->h, v, NULL, q, v);
 }
 
 static const msr_integrator pefrl = {.name = "pefrl",

@@ -193,6 +193,11 @@ typedef struct msr_force {
                      double *vx, double *vy);
   /* Potential energy [kg px^2/s^2]. */
   double (*energy)(const void *self, const msr_view *s);
+  /* For conservative: adds the discrete gradient between the places of s and those of `to`, whose
+   * work is what the potential loses: F.(to - s) = U(s) - U(to). NULL: the library corrects add()
+   * at the middle to the same end (Gonzalez 1996, J. Nonlinear Sci. 6, 449). */
+  msr_status (*between)(const void *self, void *scratch, const msr_view *s, const msr_view *to,
+                        double *fx, double *fy);
   /* Upper bounds at any stretch, for the stable step: of the largest eigenvalue of -dF/dx / m
    * [1/s^2], at v = 0, and of -dF/dv / m [1/s]; both are 0 on entry. */
   msr_status (*rates)(const void *self, const msr_view *s, double *omega2, double *gamma);
@@ -248,7 +253,8 @@ MSR_API extern const msr_force *const msr_forces[];
 /* ---- Integrators ----------------------------------------------------------------------------- */
 
 /* The problem that an integrator solves: q'' = a(t, q, v) in n coordinates.
- * For a scene of N masses n = 2N, q = x[N], y[N] and v = vx[N], vy[N]. */
+ * For a scene of N masses n = 2N, q = x[N], y[N] and v = vx[N], vy[N]. Only n and acceleration are
+ * required. */
 typedef struct msr_system {
   size_t n;
   void *self;
@@ -257,15 +263,32 @@ typedef struct msr_system {
   /* Advances v by h under what depends on v alone, q and t held; backward: in adjoint order.
    * NULL: what depends on v, if anything does, is in a, and methods that split lose their order. */
   msr_status (*damp)(void *self, double t, double h, bool backward, const double *q, double *v);
-  /* q += h u, stopped by what is in the way, which reflects v; u may be v.
+  /* q += h u, stopped by what is in the way, which reflects v; u may be v. `a` [n] bends the path,
+   * q + s u + s (s - h) a / 2 at a time s of it; NULL: it is straight.
    * NULL: nothing is in the way. Integrators call msr_system_drift. */
-  msr_status (*drift)(void *self, double h, const double *u, double *q, double *v);
+  msr_status (*drift)(void *self, double h, const double *u, const double *a, double *q, double *v);
+  /* What is in the way of a step of h from (q0, v0) to (q, v): it stops q and reflects v, and
+   * `met` tells whether it did. NULL: nothing is in the way. Integrators that neither drift nor
+   * call it leave that to the library. */
+  msr_status (*bounce)(void *self, double h, const double *q0, const double *v0, double *q,
+                       double *v, bool *met);
+  /* What follows is for implicit methods. */
+  /* The mean acceleration from q0 to q1 whose work is exactly what the potentials lose (discrete
+   * gradient), what has no potential taken at time t in the middle. NULL: a in the middle. */
+  msr_status (*between)(void *self, double t, const double *q0, const double *q1, double *a);
+  /* Prepares solve for A = 1 - c da/dq at (t, q). */
+  msr_status (*linearise)(void *self, double t, const double *q, double c);
+  /* x[n] with |A x - r| <= tolerance |r|; da/dq may be what is near it and makes A positive.
+   * Both NULL: implicit methods take differences of a. */
+  msr_status (*solve)(void *self, const double *r, double tolerance, double *x);
+  double atol, rtol; /* largest error of a step, atol + rtol |q|, that adaptive methods accept */
 } msr_system;
 
-/* q += h u, past what is in the way if there is anything. What drift returns. */
+/* q += h u along a path bent by a, past what is in the way if there is anything. What drift
+ * returns. */
 static inline msr_status msr_system_drift(const msr_system *system, double h, const double *u,
-                                          double *q, double *v) {
-  if (system->drift) return system->drift(system->self, h, u, q, v);
+                                          const double *a, double *q, double *v) {
+  if (system->drift) return system->drift(system->self, h, u, a, q, v);
   for (size_t i = 0; i < system->n; i++) q[i] += h * u[i];
   return MSR_OK;
 }
@@ -280,26 +303,48 @@ static inline double msr_interval_time(const msr_interval *interval, double c) {
   return c == 1 ? interval->end : interval->t + c * interval->h;
 }
 
-/* A method. Its declarations are what tests try to refute. */
+/* What a method works with, for one system. */
+typedef struct msr_workspace {
+  double *vector; /* [vectors][n] */
+  void *object;   /* what open made */
+  uint64_t steps; /* taken so far; a method that chooses its own adds them here */
+} msr_workspace;
+
+/* A method. Its declarations are what tests try to refute. Only name, summary and step are
+ * required. */
 typedef struct msr_integrator {
-  const char *name;         /* one word */
-  const char *summary;      /* one line */
-  const char *reference;    /* author, year, place; NULL: none */
-  int order;                /* error ~ h^order at a fixed time */
-  bool symplectic;          /* keeps phase-space area, where a is a gradient and v isn't used */
-  bool reversible;          /* flipping v retraces the path, likewise, where no support is met */
-  bool splits;              /* advances what depends on v by damp(), not through a */
-  double evaluations;       /* of a, per step */
-  double stability;         /* largest stable h*omega for q'' = -omega^2 q; 0: none is */
-  double damping_stability; /* largest stable h*gamma for v' = -gamma v through a; 0: none is */
+  const char *name;      /* one word */
+  const char *summary;   /* one line */
+  const char *reference; /* author, year, place; NULL: none */
+  int order;             /* error ~ h^order at a fixed time */
+  int damped_order;      /* the same where a force depends on v; 0: order */
+  bool symplectic;       /* keeps phase-space area, where a is a gradient and v isn't used */
+  bool reversible;       /* flipping v retraces the path, likewise, where no support is met */
+  bool conservative;     /* keeps the energy for any h, likewise */
+  bool splits;           /* advances what depends on v by damp(), not through a */
+  bool bounces;          /* sees to what is in the way itself: moves q by msr_system_drift alone, or
+                          * calls bounce(); else the library does after each step */
+  bool implicit;         /* solves equations: evaluations are as many as that takes */
+  bool adaptive;         /* chooses its own steps within the interval, by atol and rtol */
+  bool remembers;        /* more than (t, q, v): a copy of the state or a saved one begins anew */
+  double evaluations;    /* of a, per step; 0: as many as it takes */
+  double stability;      /* largest stable h*omega for q'' = -omega^2 q; 0: none, INFINITY: all */
+  double damping_stability; /* largest stable h*gamma for v' = -gamma v: through damp() if it
+                             * splits, else through a; 0: none is */
   size_t vectors;           /* of n doubles of workspace */
+  /* Memory of its own beside the vectors; NULL: none. MSR_ENOMEM; MSR_EUSAGE if the system is too
+   * large for it. */
+  msr_status (*open)(const struct msr_integrator *self, const msr_system *system, void **object,
+                     msr_error *err);
+  void (*close)(void *object);
   /* Makes the workspace fit (t, q, v): called before the first step and whenever they have been
    * changed from outside. NULL: no need. */
   msr_status (*begin)(const struct msr_integrator *self, const msr_system *system, double t,
-                      const double *q, const double *v, double *work);
-  /* Advances q and v over the interval. */
+                      const double *q, const double *v, msr_workspace *work);
+  /* Advances q and v over the interval. MSR_EUNSTABLE if its equations can't be solved. */
   msr_status (*step)(const struct msr_integrator *self, const msr_system *system,
-                     const msr_interval *interval, double *q, double *v, double *work);
+                     const msr_interval *interval, double *q, double *v, msr_workspace *work,
+                     msr_error *err);
   const void *coefficients; /* of the family's row */
 } msr_integrator;
 
@@ -312,7 +357,7 @@ MSR_API extern const msr_integrator msr_integrator_rk4;
 MSR_API extern const msr_integrator *const msr_integrators[];
 
 /* Steps any system, scene or none: q and v [system->n] from time t by `steps` steps of h.
- * MSR_ENOMEM, or what the system's callbacks return. */
+ * MSR_ENOMEM, what the integrator finds wrong, or what the system's callbacks return. */
 MSR_API msr_status msr_integrate(const msr_integrator *integrator, const msr_system *system,
                                  double t, double h, uint64_t steps, double *q, double *v,
                                  msr_error *err);
@@ -398,9 +443,20 @@ MSR_API msr_status msr_scene_mass_at(const msr_scene *scene, size_t column, size
 
 typedef struct msr_plan msr_plan;
 
+/* How a mass meets a support. */
+typedef enum msr_impacts {
+  MSR_IMPACTS_KEPT,   /* it keeps its old place for the step, and its velocity is reflected: order 1
+                       * through a bounce, and energy is kept for ever so long */
+  MSR_IMPACTS_LOCATED /* it is reflected at the time when its path, bent by its acceleration, meets
+                       * the support: order 2; many impacts heat a stiff object */
+} msr_impacts;
+
 typedef struct msr_plan_options {
   const msr_integrator *integrator; /* NULL: Verlet */
   uint64_t substeps; /* steps per iteration; 0: as many as keep below the safe step */
+  double atol, rtol; /* of a step, for adaptive methods: error of q [px] and v [px/s] up to
+                      * atol + rtol |q|; both 0: atol 1e-6 */
+  msr_impacts impacts;
 } msr_plan_options;
 
 /* Compiles the scene, which may be freed after; the integrator must outlive the plan. `options` may
@@ -432,7 +488,9 @@ typedef struct msr_plan_figures {
   size_t width, height; /* of the picture [px]; 0: the scene has none */
   size_t supports;      /* black pixels */
   const msr_integrator *integrator;
+  msr_impacts impacts;
   uint64_t iterations, images, substeps;
+  double atol, rtol;  /* of adaptive methods */
   double dt;          /* of an iteration [s] */
   double h;           /* of a step: dt / substeps [s] */
   double stable_step; /* steps below this are stable at any stretch [s]; 0: none; may be INFINITY */
@@ -514,6 +572,13 @@ MSR_API uint64_t msr_state_calls(const msr_state *state, size_t effect);
 
 /* Collisions of masses with supports so far. */
 MSR_API uint64_t msr_state_contacts(const msr_state *state);
+
+/* Steps so far, those that an adaptive method chose included, and evaluations of the acceleration.
+ */
+typedef struct msr_work {
+  uint64_t steps, evaluations;
+} msr_work;
+MSR_API msr_work msr_state_work(const msr_state *state);
 
 /* ---- Frames ---------------------------------------------------------------------------------- */
 

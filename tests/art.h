@@ -108,7 +108,8 @@ typedef struct world {
 static inline world open_world(msr_scene *scene, const msr_integrator *integrator,
                                uint64_t substeps) {
   world w;
-  must(msr_plan_create(scene, &(msr_plan_options){integrator, substeps}, &w.plan, &why));
+  must(msr_plan_create(scene, &(msr_plan_options){.integrator = integrator, .substeps = substeps},
+                       &w.plan, &why));
   must(msr_state_create(w.plan, &w.state, &why));
   msr_scene_free(scene);
   return w;

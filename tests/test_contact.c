@@ -25,7 +25,8 @@ static double uniform(double from, double to) {
 
 static msri_contact supports_of(const msr_picture *picture, bool closed, double restitution,
                                 double friction) {
-  const msri_supports_options options = {closed, restitution, friction};
+  const msri_supports_options options = {
+      .closed = closed, .restitution = restitution, .friction = friction};
   msri_contact contact;
   assert_int_equal(msri_supports_create(picture, &options, &contact, NULL), MSR_OK);
   return contact;
@@ -38,7 +39,7 @@ typedef struct mass {
 /* Moves one mass by h times its velocity; returns the number of collisions. */
 static uint64_t shoot(const msri_contact *contact, mass *m, double h) {
   const double u[2] = {m->v[0], m->v[1]};
-  return contact->move(contact->self, 1, h, u, m->q, m->v);
+  return contact->drift(contact->self, 1, h, u, NULL, m->q, m->v);
 }
 
 /* ---- Regions: cells that a path through air joins, in a picture with a ring around it */
@@ -333,7 +334,7 @@ static void only_what_approaches_is_reflected(void **unused) {
   const msri_contact contact = supports_of(wall, false, 1, 0);
   const double u[2] = {200, 0}; // RK4 moves by the mean velocity of the step, not by v
   double q[2] = {0.5, 0.5}, v[2] = {-3, 0};
-  assert_int_equal(contact.move(contact.self, 1, 0.005, u, q, v), 1);
+  assert_int_equal(contact.drift(contact.self, 1, 0.005, u, NULL, q, v), 1);
   assert_true(v[0] == -3 && q[0] == 0.5);
   contact.release(contact.self);
   msr_picture_free(wall);
@@ -562,7 +563,7 @@ static void absent_contacts_leave_no_code(void **unused) {
   for (size_t i = 0; i < LENGTH(rows); i++) {
     const setting s = {rows[i].art, usual, {.closed_border = rows[i].closed}, 1, 0, 0};
     world w = build(&s, NULL);
-    assert_int_equal(w.plan->contact.move != NULL, rows[i].any);
+    assert_int_equal(w.plan->contact.drift != NULL, rows[i].any);
     assert_int_equal(msri_state_system(w.state).drift != NULL, rows[i].any);
     close_world(w);
   }

@@ -322,7 +322,7 @@ static void sound_up_to_the_stable_step(void **unused) {
       if ((*method)->stability == 0) continue;
       msr_scene *scene = scenes[i]();
       msr_plan *plan;
-      const msr_plan_options options = {*method, 1};
+      const msr_plan_options options = {.integrator = *method, .substeps = 1};
       must(msr_plan_create(scene, &options, &plan, &why));
       const double h = 0.99 * msr_plan_describe(plan).stable_step;
       msr_plan_free(plan);

@@ -174,14 +174,15 @@ static void integrators_agree(void **state) {
 /* ---- A composition of one's own */
 
 static msr_status begin_jumps(const msr_integrator *self, const msr_system *system, double t,
-                              const double *q, const double *v, double *work) {
+                              const double *q, const double *v, msr_workspace *work) {
   (void)self;
   return msr_integrator_verlet.begin(&msr_integrator_verlet, system, t, q, v, work);
 }
 
 /* Verlet thrice: forward beyond the end, back to before the start, and to the end. */
 static msr_status jump(const msr_integrator *self, const msr_system *system,
-                       const msr_interval *interval, double *q, double *v, double *work) {
+                       const msr_interval *interval, double *q, double *v, msr_workspace *work,
+                       msr_error *err) {
   (void)self;
   const double forward = 1 / (2 - cbrt(2)), at[] = {0, forward, 1 - forward, 1};
   msr_status status = MSR_OK;
@@ -189,7 +190,7 @@ static msr_status jump(const msr_integrator *self, const msr_system *system,
     const msr_interval part = {msr_interval_time(interval, at[n]),
                                (at[n + 1] - at[n]) * interval->h,
                                msr_interval_time(interval, at[n + 1])};
-    status = msr_integrator_verlet.step(&msr_integrator_verlet, system, &part, q, v, work);
+    status = msr_integrator_verlet.step(&msr_integrator_verlet, system, &part, q, v, work, err);
   }
   return status;
 }

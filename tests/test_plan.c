@@ -57,7 +57,7 @@ static msr_scene *lattice(size_t width, size_t height, size_t below, const msr_c
 }
 
 static msr_plan *plan_with(msr_scene *scene, const msr_integrator *integrator, uint64_t substeps) {
-  const msr_plan_options options = {integrator, substeps};
+  const msr_plan_options options = {.integrator = integrator, .substeps = substeps};
   msr_plan *plan;
   msr_error err = {.message = ""};
   if (msr_plan_create(scene, &options, &plan, &err) != MSR_OK) fail_msg("%s", err.message);

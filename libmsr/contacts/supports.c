@@ -67,25 +67,50 @@ static void reflect(const msri_supports_options *o, double way, double *normal, 
   *along = fabs(*along) > most ? *along - copysign(most, *along) : 0;
 }
 
-static uint64_t move(const void *self, size_t n, double h, const double *u, double *q, double *v) {
-  const supports *s = self;
+/* A mass goes to (to_x, to_y) by the rule above. Returns the number of collisions. */
+static unsigned keep(const supports *s, double to_x, double to_y, double *x, double *y, double *vx,
+                     double *vy) {
+  const double dx = to_x - *x, dy = to_y - *y;
+  unsigned collisions = 0;
+  if (floor(to_x) != floor(*x) && blocked(s, *x, to_x, *y, true)) {
+    reflect(&s->options, dx, vx, vy);
+    collisions++;
+  } else {
+    *x = to_x;
+  }
+  if (floor(to_y) != floor(*y) && blocked(s, *y, to_y, *x, false)) {
+    reflect(&s->options, dy, vy, vx);
+    collisions++;
+  } else {
+    *y = to_y;
+  }
+  return collisions;
+}
+
+static uint64_t drift(const void *self, size_t n, double h, const double *u, const double *a,
+                      double *q, double *v) {
   double *x = q, *y = q + n, *vx = v, *vy = v + n;
   const double *ux = u, *uy = u + n;
   uint64_t collisions = 0;
-  for (size_t i = 0; i < n; i++) {
-    const double dx = h * ux[i], dy = h * uy[i], to_x = x[i] + dx, to_y = y[i] + dy;
-    if (floor(to_x) != floor(x[i]) && blocked(s, x[i], to_x, y[i], true)) {
-      reflect(&s->options, dx, &vx[i], &vy[i]);
-      collisions++;
-    } else {
-      x[i] = to_x;
-    }
-    if (floor(to_y) != floor(y[i]) && blocked(s, y[i], to_y, x[i], false)) {
-      reflect(&s->options, dy, &vy[i], &vx[i]);
-      collisions++;
-    } else {
-      y[i] = to_y;
-    }
+  (void)a;
+  for (size_t i = 0; i < n; i++)
+    collisions += keep(self, x[i] + h * ux[i], y[i] + h * uy[i], &x[i], &y[i], &vx[i], &vy[i]);
+  return collisions;
+}
+
+/* Half of the velocity's change comes before the way, half after it, so that a bounce costs no
+ * energy. */
+static uint64_t bounce(const void *self, size_t n, double h, const double *q0, const double *v0,
+                       double *q, double *v) {
+  uint64_t collisions = 0;
+  (void)h;
+  for (size_t i = 0, j = n; i < n; i++, j++) {
+    double x = q0[i], y = q0[j], vx = (v0[i] + v[i]) / 2, vy = (v0[j] + v[j]) / 2;
+    const unsigned met = keep(self, q[i], q[j], &x, &y, &vx, &vy);
+    if (met == 0) continue;
+    q[i] = x, q[j] = y;
+    v[i] = vx + (v[i] - v0[i]) / 2, v[j] = vy + (v[j] - v0[j]) / 2;
+    collisions += met;
   }
   return collisions;
 }
@@ -108,6 +133,6 @@ msr_status msri_supports_create(const msr_picture *picture, const msri_supports_
   s->height = picture->height;
   s->options = *options;
   mark(s, picture);
-  *contact = (msri_contact){s, move, free};
+  *contact = (msri_contact){s, drift, bounce, free};
   return MSR_OK;
 }

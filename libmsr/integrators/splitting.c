@@ -23,16 +23,18 @@ static msr_status accelerate(const msr_system *system, double t, const double *q
 }
 
 static msr_status begin(const msr_integrator *self, const msr_system *system, double t,
-                        const double *q, const double *v, double *work) {
+                        const double *q, const double *v, msr_workspace *work) {
   const splitting *row = self->coefficients;
-  return row->symmetric ? accelerate(system, t, q, v, work) : MSR_OK;
+  return row->symmetric ? accelerate(system, t, q, v, work->vector) : MSR_OK;
 }
 
 static msr_status step(const msr_integrator *self, const msr_system *system,
-                       const msr_interval *interval, double *q, double *v, double *work) {
+                       const msr_interval *interval, double *q, double *v, msr_workspace *work,
+                       msr_error *err) {
+  (void)err;
   const splitting *row = self->coefficients;
   const double h = interval->h;
-  double *a = work, share = 0;
+  double *a = work->vector, share = 0;
   msr_status status = MSR_OK;
   if (row->symmetric) status = damp(system, interval->t, h / 2, false, q, v);
   for (int s = 0; s < row->stages && status == MSR_OK; s++) {
@@ -43,7 +45,7 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
     for (size_t i = 0; i < system->n; i++) v[i] += bh * a[i];
     if (s == 0 && !row->symmetric) status = damp(system, interval->t, h, false, q, v);
     if (status == MSR_OK && row->drift[s] != 0)
-      status = msr_system_drift(system, row->drift[s] * h, v, q, v);
+      status = msr_system_drift(system, row->drift[s] * h, v, a, q, v);
     share += row->drift[s];
   }
   if (status != MSR_OK || !row->symmetric) return status;
@@ -60,6 +62,7 @@ const msr_integrator msr_integrator_symplectic_euler = {
     .order = 1,
     .symplectic = true,
     .splits = true,
+    .bounces = true,
     .evaluations = 1,
     .stability = 2,
     .damping_stability = 2,
@@ -77,6 +80,7 @@ const msr_integrator msr_integrator_verlet = {
     .symplectic = true,
     .reversible = true,
     .splits = true,
+    .bounces = true,
     .evaluations = 1,
     .stability = 2,
     .damping_stability = 2,

@@ -46,6 +46,7 @@ static msr_status acceleration(void *self, double t, const double *q, const doub
   msr_state *state = self;
   const msr_view view = msri_plan_view(state->plan, t, q, v);
   memset(a, 0, 2 * view.n * sizeof *a);
+  state->evaluations++;
   const msr_status status =
       msri_state_add_forces(state, &view, v ? any : without_velocity, true, a, a + view.n);
   divide_by_mass(&view, a);
@@ -92,11 +93,30 @@ static msr_status damp(void *self, double t, double h, bool backward, const doub
   return MSR_OK;
 }
 
-static msr_status drift(void *self, double h, const double *u, double *q, double *v) {
-  msr_state *state = self;
+/* Contacts are the effects that are on after the terms. */
+static void count_contacts(msr_state *state, uint64_t collisions) {
   const msr_plan *plan = state->plan;
   for (size_t e = plan->n_terms; e < plan->n_effects && plan->effect[e].on; e++) state->calls[e]++;
-  state->contacts += plan->contact.move(plan->contact.self, plan->figures.masses, h, u, q, v);
+  state->contacts += collisions;
+}
+
+static msr_status drift(void *self, double h, const double *u, const double *a, double *q,
+                        double *v) {
+  msr_state *state = self;
+  const msri_contact *contact = &state->plan->contact;
+  const size_t n = state->plan->figures.masses;
+  count_contacts(state, contact->drift(contact->self, n, h, u, a, q, v));
+  return MSR_OK;
+}
+
+static msr_status bounce(void *self, double h, const double *q0, const double *v0, double *q,
+                         double *v, bool *met) {
+  msr_state *state = self;
+  const msri_contact *contact = &state->plan->contact;
+  const size_t n = state->plan->figures.masses;
+  const uint64_t collisions = contact->bounce(contact->self, n, h, q0, v0, q, v);
+  *met = collisions > 0;
+  count_contacts(state, collisions);
   return MSR_OK;
 }
 
@@ -107,12 +127,16 @@ static bool damps(const msr_plan *plan) {
 }
 
 msr_system msri_state_system(msr_state *state) {
+  const bool touches = state->plan->contact.drift != NULL;
   return (msr_system){
       .n = 2 * state->plan->figures.masses,
       .self = state,
       .acceleration = acceleration,
       .damp = damps(state->plan) ? damp : NULL,
-      .drift = state->plan->contact.move ? drift : NULL,
+      .drift = touches && state->plan->figures.integrator->bounces ? drift : NULL,
+      .bounce = touches ? bounce : NULL,
+      .atol = state->plan->figures.atol,
+      .rtol = state->plan->figures.rtol,
   };
 }
 

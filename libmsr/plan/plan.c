@@ -103,7 +103,8 @@ static msr_status add_contact(msr_plan *plan, const msr_scene *scene, msr_error 
     msri_format(reason, MSR_MESSAGE_SIZE, "it is closed; restitution %g, friction %g",
                 scene->restitution, scene->friction);
   if (!supports && !border) return MSR_OK;
-  const msri_supports_options options = {closed, scene->restitution, scene->friction};
+  const msri_supports_options options = {closed, scene->restitution, scene->friction,
+                                         plan->figures.impacts};
   return msri_supports_create(plan->picture, &options, &plan->contact, err);
 }
 
@@ -159,7 +160,7 @@ static void count_memory(msr_plan *plan) {
                   mesh->run_capacity * sizeof *mesh->run +
                   mesh->n_added * (sizeof *mesh->k + sizeof *mesh->L) +
                   mesh->anchor_capacity * sizeof *mesh->anchor +
-                  (plan->contact.move ? f->width * f->height / 8 : 0);
+                  (plan->contact.drift ? f->width * f->height / 8 : 0);
   f->state_bytes = msri_state_bytes(plan);
 }
 
@@ -197,12 +198,17 @@ msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *optio
       options->integrator ? options->integrator : &msr_integrator_verlet;
   msr_status status = check_integrator(integrator, err);
   if (status != MSR_OK) return status;
+  static const double default_atol = 1e-6;
   msr_plan *made = msri_alloc(1, sizeof *made, "a plan", err);
   if (!made) return MSR_ENOMEM;
   made->figures = (msr_plan_figures){.integrator = integrator,
                                      .iterations = scene->conf.iterations,
                                      .images = scene->conf.images,
-                                     .dt = scene->conf.dt};
+                                     .dt = scene->conf.dt,
+                                     .impacts = options->impacts,
+                                     .atol = options->atol,
+                                     .rtol = options->rtol};
+  if (!(options->atol > 0 || options->rtol > 0)) made->figures.atol = default_atol;
   status = compile(made, scene, options->substeps, err);
   if (status == MSR_OK)
     *plan = made;

@@ -57,6 +57,11 @@ static inline bool msri_force_drives(const msr_force *force) {
   return !force->dissipative && (!force->conservative || force->uses_time);
 }
 
+/* Does the library see to contacts after each step, since the integrator doesn't? */
+static inline bool msri_plan_bounces(const msr_plan *plan) {
+  return plan->contact.bounce && !plan->figures.integrator->bounces;
+}
+
 /* The time after so many iterations and substeps: made of whole numbers, never summed, so that
  * nothing depends on how a run is cut in pieces. */
 static inline double msri_plan_time(const msr_plan_figures *f, uint64_t iteration,

@@ -56,7 +56,7 @@ static double crush(const msr_plan *plan) {
  * from about 0.15 on, has masses that pass through each other, whose force turns round within a
  * step: measured, up to 8 times smaller steps keep its energy to a few per cent. */
 static double safe_share(const msr_plan *plan) {
-  if (!plan->contact.move) return 0.9;
+  if (!plan->contact.drift) return 0.9;
   const double crushed = crush(plan) / 0.15;
   return crushed > 1 ? 0.5 / msri_min(crushed, 8) : 0.5;
 }

@@ -11,7 +11,7 @@
 
 /* Where each array lies in the block, in bytes; `bytes` is the whole. */
 typedef struct layout {
-  size_t q, v, work, middle, drive, scratch, calls, bytes;
+  size_t q, v, work, before, middle, drive, scratch, calls, bytes;
 } layout;
 
 static size_t reserve(size_t *end, size_t bytes) {
@@ -30,6 +30,7 @@ static layout lay_out(const msr_plan *plan) {
   l.q = reserve(&end, vector);
   l.v = reserve(&end, vector);
   l.work = reserve(&end, (vectors > 0 ? vectors : 1) * vector);
+  l.before = reserve(&end, msri_plan_bounces(plan) ? 2 * vector : 0);
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
   l.drive = reserve(&end, plan->driven ? vector : 0);
   l.scratch = reserve(&end, plan->scratch_bytes);
@@ -49,7 +50,8 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .plan = plan,
       .q = (void *)(block + l.q),
       .v = (void *)(block + l.v),
-      .work = (void *)(block + l.work),
+      .work = {.vector = (void *)(block + l.work)},
+      .before = (void *)(block + l.before),
       .middle = (void *)(block + l.middle),
       .drive = (void *)(block + l.drive),
       .scratch = block + l.scratch,
@@ -57,19 +59,35 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
   };
   const size_t n = plan->figures.masses;
   msri_plan_start(plan, made->q, made->q + n, made->v, made->v + n);
+  const msr_integrator *integrator = plan->figures.integrator;
+  if (integrator->open) {
+    const msr_system system = msri_state_system(made);
+    const msr_status status = integrator->open(integrator, &system, &made->work.object, err);
+    if (status != MSR_OK) {
+      free(made);
+      return status;
+    }
+  }
   *state = made;
   return MSR_OK;
 }
 
-void msr_state_free(msr_state *state) { free(state); }
+void msr_state_free(msr_state *state) {
+  if (!state) return;
+  const msr_integrator *integrator = state->plan->figures.integrator;
+  if (integrator->close) integrator->close(state->work.object);
+  free(state);
+}
 
 void msr_state_copy(msr_state *to, const msr_state *from) {
   assert(to->plan == from->plan);
   const layout l = lay_out(from->plan);
   to->iteration = from->iteration;
   to->substep = from->substep;
-  to->fresh = from->fresh;
+  to->fresh = from->fresh && !from->plan->figures.integrator->remembers;
   to->contacts = from->contacts;
+  to->evaluations = from->evaluations;
+  to->work.steps = from->work.steps;
   to->frames = from->frames;
   to->guard = from->guard;
   memcpy((char *)to + l.q, (const char *)from + l.q, l.bytes - l.q);
@@ -112,6 +130,10 @@ msr_arrays msr_state_edit(msr_state *state) {
 uint64_t msr_state_iteration(const msr_state *state) { return state->iteration; }
 
 uint64_t msr_state_contacts(const msr_state *state) { return state->contacts; }
+
+msr_work msr_state_work(const msr_state *state) {
+  return (msr_work){state->work.steps, state->evaluations};
+}
 
 uint64_t msr_state_calls(const msr_state *state, size_t effect) {
   return effect < state->plan->n_effects ? state->calls[effect] : 0;

@@ -18,16 +18,17 @@ struct msr_state {
   const msr_plan *plan;
   uint64_t iteration, substep; /* done; substeps of the iteration that is under way */
   bool fresh;                  /* the integrator's workspace fits q and v */
-  uint64_t contacts;
+  uint64_t contacts, evaluations;
   uint64_t frames;         /* of a run that went to the sinks */
   const msr_force *failed; /* the force whose status stopped the last step */
   msri_guard guard;
-  double *q, *v;   /* x[n], y[n]; vx[n], vy[n] */
-  double *work;    /* [integrator->vectors, 1 at least][2n] */
-  double *middle;  /* [4n] if plan->midpoint: force, velocity */
-  double *drive;   /* [2n] if plan->driven: driving forces */
-  char *scratch;   /* [plan->scratch_bytes] */
-  uint64_t *calls; /* [plan->n_effects] */
+  msr_workspace work; /* vector [integrator->vectors, 1 at least][2n] */
+  double *q, *v;      /* x[n], y[n]; vx[n], vy[n] */
+  double *before;     /* [4n] if the library bounces: q, v before the step */
+  double *middle;     /* [4n] if plan->midpoint: force, velocity */
+  double *drive;      /* [2n] if plan->driven: driving forces */
+  char *scratch;      /* [plan->scratch_bytes] */
+  uint64_t *calls;    /* [plan->n_effects] */
 };
 
 static inline double msri_state_time(const msr_state *state) {

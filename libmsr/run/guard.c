@@ -67,7 +67,7 @@ msr_status msri_guard_begin(msr_state *state, msr_error *err) {
   if (state->guard.begun) return MSR_OK;
   const msr_plan_figures *figures = &state->plan->figures;
   const msr_view view = msr_state_view(state);
-  double *f = state->work; /* the integrator begins anew */
+  double *f = state->work.vector; /* the integrator begins anew */
   state->fresh = false;
   memset(f, 0, 2 * view.n * sizeof *f);
   const msr_status status = msri_state_add_forces(state, &view, is_outer, false, f, f + view.n);

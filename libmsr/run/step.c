@@ -5,50 +5,94 @@
 #include "run/guard.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+typedef struct course {
+  double t, h;
+  uint64_t steps;
+} course;
+
+static msr_status go(const msr_integrator *integrator, const msr_system *system, const course *c,
+                     double *q, double *v, msr_workspace *work, msr_error *err) {
+  msr_status status = MSR_OK;
+  if (integrator->begin) status = integrator->begin(integrator, system, c->t, q, v, work);
+  for (uint64_t s = 0; s < c->steps && status == MSR_OK; s++) {
+    const double t = c->t + (double)s * c->h, end = c->t + (double)(s + 1) * c->h;
+    status = integrator->step(integrator, system, &(msr_interval){t, c->h, end}, q, v, work, err);
+  }
+  return status;
+}
 
 msr_status msr_integrate(const msr_integrator *integrator, const msr_system *system, double t,
                          double h, uint64_t steps, double *q, double *v, msr_error *err) {
-  double *work = msri_alloc(integrator->vectors * system->n, sizeof *work, "an integrator", err);
-  if (!work) return MSR_ENOMEM;
+  msr_workspace work = {0};
+  msr_error said = {MSR_OK, ""};
+  work.vector =
+      msri_alloc(integrator->vectors * system->n, sizeof *work.vector, "an integrator", err);
+  if (!work.vector) return MSR_ENOMEM;
   msr_status status = MSR_OK;
-  if (integrator->begin) status = integrator->begin(integrator, system, t, q, v, work);
-  for (uint64_t s = 0; s < steps && status == MSR_OK; s++) {
-    const msr_interval interval = {t + (double)s * h, h, t + (double)(s + 1) * h};
-    status = integrator->step(integrator, system, &interval, q, v, work);
+  if (integrator->open) status = integrator->open(integrator, system, &work.object, &said);
+  if (status == MSR_OK) {
+    status = go(integrator, system, &(course){t, h, steps}, q, v, &work, &said);
+    if (integrator->close) integrator->close(work.object);
   }
-  free(work);
-  return status == MSR_OK
-             ? MSR_OK
-             : msri_fail(err, status, "%s: %s", integrator->name, msr_status_text(status));
-}
-
-/* One substep; the caller has begun the integrator. */
-static msr_status substep(msr_state *state, const msr_system *system) {
-  const msr_plan_figures *f = &state->plan->figures;
-  const msr_interval interval = {msri_state_time(state), f->h,
-                                 msri_plan_time(f, state->iteration, state->substep + 1)};
-  const msr_status status =
-      f->integrator->step(f->integrator, system, &interval, state->q, state->v, state->work);
-  if (status != MSR_OK) return status;
-  state->substep++;
-  return msri_guard_follow(state);
+  free(work.vector);
+  if (status == MSR_OK) return MSR_OK;
+  return msri_hand_on(err, status, &said, "%s: %s", integrator->name, msr_status_text(status));
 }
 
 static msr_status begin(msr_state *state, const msr_system *system) {
   const msr_integrator *integrator = state->plan->figures.integrator;
   if (state->fresh || !integrator->begin) return MSR_OK;
   const msr_status status = integrator->begin(integrator, system, msri_state_time(state), state->q,
-                                              state->v, state->work);
+                                              state->v, &state->work);
   state->fresh = status == MSR_OK;
   return status;
 }
 
-/* One iteration, or what is left of the one that was cut short. */
-static msr_status iterate(msr_state *state, const msr_system *system, const msri_poll *poll) {
+static msr_status step(msr_state *state, const msr_system *system, const msr_interval *interval,
+                       msr_error *err) {
+  const msr_integrator *integrator = state->plan->figures.integrator;
+  if (!integrator->adaptive) state->work.steps++;
+  return integrator->step(integrator, system, interval, state->q, state->v, &state->work, err);
+}
+
+/* A step as if nothing were in the way, then what was. */
+static msr_status step_and_bounce(msr_state *state, const msr_system *system,
+                                  const msr_interval *interval, msr_error *err) {
+  const size_t n = system->n;
+  double *q0 = state->before, *v0 = q0 + n;
+  bool met = false;
+  memcpy(q0, state->q, n * sizeof *q0);
+  memcpy(v0, state->v, n * sizeof *v0);
+  msr_status status = step(state, system, interval, err);
+  if (status == MSR_OK)
+    status = system->bounce(state, interval->h, q0, v0, state->q, state->v, &met);
+  if (met) state->fresh = false;
+  return status;
+}
+
+/* One substep. */
+static msr_status substep(msr_state *state, const msr_system *system, msr_error *err) {
+  const msr_plan_figures *f = &state->plan->figures;
+  const msr_interval interval = {msri_state_time(state), f->h,
+                                 msri_plan_time(f, state->iteration, state->substep + 1)};
   msr_status status = begin(state, system);
+  if (status == MSR_OK)
+    status = msri_plan_bounces(state->plan) ? step_and_bounce(state, system, &interval, err)
+                                            : step(state, system, &interval, err);
+  if (status != MSR_OK) return status;
+  state->substep++;
+  return msri_guard_follow(state);
+}
+
+/* One iteration, or what is left of the one that was cut short. */
+static msr_status iterate(msr_state *state, const msr_system *system, const msri_poll *poll,
+                          msr_error *err) {
+  msr_status status = MSR_OK;
   while (state->substep < state->plan->figures.substeps && status == MSR_OK) {
     if (poll->call) status = poll->call(poll->data, state);
-    if (status == MSR_OK) status = substep(state, system);
+    if (status == MSR_OK) status = substep(state, system, err);
   }
   if (status != MSR_OK) return status;
   state->substep = 0;
@@ -56,11 +100,13 @@ static msr_status iterate(msr_state *state, const msr_system *system, const msri
   return MSR_OK;
 }
 
-/* Which iteration a status stopped, and which force if it was one. */
-static msr_status explain(const msr_state *state, msr_status status, msr_error *err) {
+/* Which iteration a status stopped, and why: what the integrator said, or which force it was. */
+static msr_status explain(const msr_state *state, msr_status status, const msr_error *said,
+                          msr_error *err) {
+  const bool told = said->message[0] != '\0', force = !told && state->failed;
   return msri_fail(err, status, "iteration %llu: %s%s%s", (unsigned long long)state->iteration,
-                   state->failed ? state->failed->name : "", state->failed ? ": " : "",
-                   msr_status_text(status));
+                   force ? state->failed->name : "", force ? ": " : "",
+                   told ? said->message : msr_status_text(status));
 }
 
 msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *poll, msr_error *err) {
@@ -69,8 +115,9 @@ msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *pol
   msr_status status = msri_guard_begin(state, err);
   if (status != MSR_OK) return status;
   for (uint64_t i = 0; i < iterations; i++) {
-    status = iterate(state, &system, poll);
-    if (status != MSR_OK) return explain(state, status, err);
+    msr_error said = {MSR_OK, ""};
+    status = iterate(state, &system, poll, &said);
+    if (status != MSR_OK) return explain(state, status, &said, err);
     if (state->iteration % MSRI_GUARD_PERIOD == 0) status = msr_state_check(state, err);
     if (status != MSR_OK) return status;
   }
