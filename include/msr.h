@@ -351,6 +351,11 @@ typedef struct msr_integrator {
 MSR_API extern const msr_integrator msr_integrator_euler;            /* explicit; for contrast */
 MSR_API extern const msr_integrator msr_integrator_symplectic_euler; /* the assignment's steps */
 MSR_API extern const msr_integrator msr_integrator_verlet;
+MSR_API extern const msr_integrator msr_integrator_pefrl;
+MSR_API extern const msr_integrator msr_integrator_srkn4;
+MSR_API extern const msr_integrator msr_integrator_srkn6;
+MSR_API extern const msr_integrator msr_integrator_kahan_li_6;
+MSR_API extern const msr_integrator msr_integrator_kahan_li_8;
 MSR_API extern const msr_integrator msr_integrator_rk4;
 
 /* All of the above, then NULL. */

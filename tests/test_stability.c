@@ -11,15 +11,16 @@ static double grown(const msr_integrator *integrator, const msr_system *system, 
   return isfinite(q) && isfinite(v) ? fmax(fabs(q), fabs(v)) : INFINITE;
 }
 
-/* Below the limit by one in a thousand, Verlet swings by 1 / sqrt(1 - 0.999^2) = 22. Above, what
- * grows least is Runge-Kutta's, by 0.7 % a step. */
+/* Below the limit by one in a thousand, Verlet swings by 1 / sqrt(1 - 0.999^2) = 22. Above it by
+ * one in ten thousand, what grows least is srkn6, by 0.04 % a step: beyond a narrow band it would
+ * be stable again. */
 static void check_frequency_limit(const msr_integrator *integrator) {
   const double limit = integrator->stability, none[] = {1.5, 0.5, 0.1};
   counted c = {.omega = 0.999 * limit};
   const msr_system system = {.n = 1, .self = &c, .acceleration = oscillate};
   if (limit > 0) assert_true(grown(integrator, &system, 20000) < 100);
-  c.omega = 1.001 * limit;
-  if (limit > 0) assert_true(grown(integrator, &system, 20000) > 1e6);
+  c.omega = 1.0001 * limit;
+  if (limit > 0) assert_true(grown(integrator, &system, 100000) > 1e6);
   for (size_t i = 0; limit <= 0 && i < LENGTH(none); i++) {
     c.omega = none[i];
     assert_true(grown(integrator, &system, 20000) > 1e6);
@@ -29,26 +30,6 @@ static void check_frequency_limit(const msr_integrator *integrator) {
 static void the_limit_of_frequency_is_sharp(void **state) {
   (void)state;
   on_all(check_frequency_limit);
-}
-
-static msr_status slow_down(void *self, double t, const double *q, const double *v, double *a) {
-  (void)t, (void)q;
-  a[0] = -((const counted *)self)->gamma * v[0];
-  return MSR_OK;
-}
-
-/* q = 1 + the sum of all v: bounded too. */
-static void check_damping_limit(const msr_integrator *integrator) {
-  counted c = {.gamma = 0.999 * integrator->damping_stability};
-  const msr_system system = {.n = 1, .self = &c, .acceleration = slow_down};
-  assert_true(grown(integrator, &system, 20000) < 100);
-  c.gamma = 1.001 * integrator->damping_stability;
-  assert_true(grown(integrator, &system, 20000) > 1e6);
-}
-
-static void the_limit_of_damping_is_sharp(void **state) {
-  (void)state;
-  on_all(check_damping_limit);
 }
 
 static msr_status oscillate_slowing(void *self, double t, const double *q, const double *v,
@@ -65,18 +46,45 @@ static msr_status decay(void *self, double t, double h, bool backward, const dou
   return MSR_OK;
 }
 
-/* A splitting is stable up to its limit of frequency for any damping taken exactly; any other
- * method on the segment between its two limits. */
+/* A system that slows down, through damp() for what splits, else through a. */
+static msr_system slowing(const msr_integrator *integrator, counted *c) {
+  const bool splits = integrator->splits;
+  return (msr_system){.n = 1,
+                      .self = c,
+                      .acceleration = splits ? oscillate : oscillate_slowing,
+                      .damp = splits ? decay : NULL};
+}
+
+/* With hardly a force that depends on q, so that only damping counts: q is 1 + the sum of all v,
+ * bounded too. A limit through damp() is where growth begins, slowly, for a force that is small. */
+static void check_damping_limit(const msr_integrator *integrator) {
+  const double limit = integrator->damping_stability, any[] = {1, 30, 600};
+  counted c = {.omega = integrator->splits ? 0.03 : 0, .gamma = 0.999 * limit};
+  const msr_system system = slowing(integrator, &c);
+  for (size_t i = 0; isinf(limit) && i < LENGTH(any); i++) {
+    c.gamma = any[i];
+    assert_true(grown(integrator, &system, 20000) < 100);
+  }
+  if (isinf(limit)) return;
+  assert_true(grown(integrator, &system, 20000) < 100);
+  c.gamma = (integrator->splits ? 2.5 : 1.001) * limit;
+  assert_true(grown(integrator, &system, 20000) > 1e6);
+}
+
+static void the_limit_of_damping_is_sharp(void **state) {
+  (void)state;
+  on_all(check_damping_limit);
+}
+
+/* A method is stable on the segment between its two limits: for any damping if it has no limit of
+ * that. */
 static void check_both_limits(const msr_integrator *integrator) {
   if (!(integrator->stability > 0)) return;
   for (double part = 0.05; part < 1; part += 0.1) {
-    const bool splits = integrator->splits;
-    counted c = {.omega = 0.99 * integrator->stability * (splits ? 1 : part),
-                 .gamma = splits ? 10 * part : 0.99 * integrator->damping_stability * (1 - part)};
-    const msr_system system = {.n = 1,
-                               .self = &c,
-                               .acceleration = splits ? oscillate : oscillate_slowing,
-                               .damp = splits ? decay : NULL};
+    const bool any = isinf(integrator->damping_stability);
+    counted c = {.omega = 0.99 * integrator->stability * (any ? 1 : part),
+                 .gamma = any ? 10 * part : 0.99 * integrator->damping_stability * (1 - part)};
+    const msr_system system = slowing(integrator, &c);
     if (!(grown(integrator, &system, 20000) < 100))
       fail_msg("%s: h omega %g, h gamma %g", integrator->name, c.omega, c.gamma);
   }

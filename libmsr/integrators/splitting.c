@@ -1,59 +1,176 @@
 /* splitting.c - symplectic splittings of q'' = a(t, q): kicks v += b h a and drifts q += c h v in
- * turn (Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, II.5). A method is a row.
+ * turn (Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, II.5, V.3). A method is a
+ * row. Where the last kick of a step and the first of the next are at the same place, one
+ * evaluation serves both.
  *
- * What depends on v is advanced by its own flow, so that damping doesn't limit the step: by half a
- * step at each end of a symmetric method, which keeps order 2 (Strang 1968), else by a whole one
- * after the first kick (at both ends, damping would lower the limit of kick and drift). */
+ * What depends on v is advanced by its own flow, so that damping doesn't limit the step. In
+ * a composition of Verlet steps each of them has a half of its flow at either end (Strang 1968),
+ * which keeps the whole one's order. Other symmetric rows have one half at each end of the step,
+ * order 2; symplectic Euler has a whole one after its kick (at both ends, damping would lower the
+ * limit of kick and drift). */
 #include "base/base.h"
 
+#include <math.h>
+
 typedef struct splitting {
-  int stages;
-  double kick[4], drift[4]; /* [stages], in units of h; each kick precedes its drift */
-  bool symmetric;           /* and so the last kick's a serves the next step's first */
+  int drifts;
+  bool symmetric;      /* both rows read the same backwards: the first half of each will do */
+  const double *drift; /* [drifts], in units of h */
+  const double *kick;  /* [drifts + 1]; NULL: a composition of Verlet steps of drift[] h */
 } splitting;
 
-static msr_status damp(const msr_system *system, double t, double h, bool backward, const double *q,
-                       double *v) {
-  return system->damp ? system->damp(system->self, t, h, backward, q, v) : MSR_OK;
+static double drift_of(const splitting *row, int j) {
+  const int mirror = row->drifts - 1 - j;
+  return row->drift[row->symmetric && j > mirror ? mirror : j];
 }
 
-static msr_status accelerate(const msr_system *system, double t, const double *q, const double *v,
-                             double *a) {
-  return system->acceleration(system->self, t, q, system->damp ? NULL : v, a);
+static double kick_of(const splitting *row, int j) {
+  const int mirror = row->drifts - j;
+  return row->kick[row->symmetric && j > mirror ? mirror : j];
+}
+
+/* What happens between two drifts, in units of h; a half flow backward, then one forward. */
+typedef struct joint {
+  double kick_before, damp_back, damp_forward, kick_after;
+} joint;
+
+static joint joint_of_composition(const splitting *row, int j) {
+  const double back = j > 0 ? drift_of(row, j - 1) / 2 : 0;
+  const double forward = j < row->drifts ? drift_of(row, j) / 2 : 0;
+  return (joint){back, back, forward, forward};
+}
+
+static joint joint_of_splitting(const splitting *row, int j) {
+  const double b = kick_of(row, j);
+  if (!row->symmetric) return (joint){b, 0, j == 0, 0};
+  if (j == row->drifts) return (joint){b, 0.5, 0, 0};
+  return (joint){0, 0, j == 0 ? 0.5 : 0, b};
+}
+
+static joint joint_of(const splitting *row, int j) {
+  return row->kick ? joint_of_splitting(row, j) : joint_of_composition(row, j);
+}
+
+/* The state of a step; t is the time of the joint. */
+typedef struct stage {
+  const msr_system *system;
+  double t, h;
+  double *q, *v, *a;
+} stage;
+
+static void kick(const stage *s, double b) {
+  const double bh = b * s->h;
+  for (size_t i = 0; b != 0 && i < s->system->n; i++) s->v[i] += bh * s->a[i];
+}
+
+static msr_status damp(const stage *s, double share, bool backward) {
+  return share == 0 ? MSR_OK
+                    : s->system->damp(s->system->self, s->t, share * s->h, backward, s->q, s->v);
+}
+
+static msr_status pass(const stage *s, const joint *j) {
+  if (!s->system->damp) {
+    kick(s, j->kick_before + j->kick_after);
+    return MSR_OK;
+  }
+  kick(s, j->kick_before);
+  msr_status status = damp(s, j->damp_back, true);
+  if (status == MSR_OK) status = damp(s, j->damp_forward, false);
+  if (status == MSR_OK) kick(s, j->kick_after);
+  return status;
+}
+
+static msr_status accelerate(const stage *s) {
+  const msr_system *system = s->system;
+  return system->acceleration(system->self, s->t, s->q, system->damp ? NULL : s->v, s->a);
+}
+
+/* Does a step begin with the acceleration that the one before ended with? */
+static bool shares(const splitting *row) {
+  return !row->kick || (row->symmetric && *row->kick != 0);
 }
 
 static msr_status begin(const msr_integrator *self, const msr_system *system, double t,
                         const double *q, const double *v, msr_workspace *work) {
-  const splitting *row = self->coefficients;
-  return row->symmetric ? accelerate(system, t, q, v, work->vector) : MSR_OK;
+  if (!shares(self->coefficients)) return MSR_OK;
+  return system->acceleration(system->self, t, q, system->damp ? NULL : v, work->vector);
 }
 
 static msr_status step(const msr_integrator *self, const msr_system *system,
                        const msr_interval *interval, double *q, double *v, msr_workspace *work,
                        msr_error *err) {
-  (void)err;
   const splitting *row = self->coefficients;
-  const double h = interval->h;
-  double *a = work->vector, share = 0;
+  stage s = {system, interval->t, interval->h, q, v, work->vector};
+  const double *bend = row->symmetric ? s.a : NULL;
+  double share = 0;
   msr_status status = MSR_OK;
-  if (row->symmetric) status = damp(system, interval->t, h / 2, false, q, v);
-  for (int s = 0; s < row->stages && status == MSR_OK; s++) {
-    if (s > 0 || !row->symmetric)
-      status = accelerate(system, msr_interval_time(interval, share), q, v, a);
-    if (status != MSR_OK) return status;
-    const double bh = row->kick[s] * h;
-    for (size_t i = 0; i < system->n; i++) v[i] += bh * a[i];
-    if (s == 0 && !row->symmetric) status = damp(system, interval->t, h, false, q, v);
-    if (status == MSR_OK && row->drift[s] != 0)
-      status = msr_system_drift(system, row->drift[s] * h, v, a, q, v);
-    share += row->drift[s];
+  (void)err;
+  for (int j = 0; j <= row->drifts && status == MSR_OK; j++) {
+    const joint at = joint_of(row, j);
+    const bool kicks = at.kick_before != 0 || at.kick_after != 0, has = j == 0 && shares(row);
+    s.t = msr_interval_time(interval, j == row->drifts ? 1 : share);
+    if (kicks && !has) status = accelerate(&s);
+    if (status == MSR_OK) status = pass(&s, &at);
+    if (j == row->drifts || status != MSR_OK) break;
+    status = msr_system_drift(system, drift_of(row, j) * s.h, v, bend, q, v);
+    share += drift_of(row, j);
   }
-  if (status != MSR_OK || !row->symmetric) return status;
-  return damp(system, interval->end, h / 2, true, q, v);
+  return status;
 }
 
-static const splitting symplectic_euler = {1, {1}, {1}, false};
-static const splitting verlet = {2, {0.5, 0.5}, {1, 0}, true};
+/* ---- Coefficients, up to the middle, which makes up the sum of 1 */
+
+static const double whole[] = {1}, euler_kick[] = {1, 0};
+static const double pefrl_drift[] = {0.1786178958448091, -0.06626458266981849,
+                                     1 - 2 * (0.1786178958448091 - 0.06626458266981849)};
+static const double pefrl_kick[] = {0, 0.5 + 0.2123418310626054, -0.2123418310626054};
+static const double srkn4_drift[] = {0.245298957184271, 0.604872665711080,
+                                     0.5 - (0.245298957184271 + 0.604872665711080)};
+static const double srkn4_kick[] = {
+    0.0829844064174052, 0.396309801498368, -0.0390563049223486,
+    1 - 2 * (0.0829844064174052 + 0.396309801498368 - 0.0390563049223486)};
+static const double srkn6_drift[] = {0.123229775946271,
+                                     0.290553797799558,
+                                     -0.127049212625417,
+                                     -0.246331761062075,
+                                     0.357208872795928,
+                                     1 - 2 * (0.123229775946271 + 0.290553797799558 -
+                                              0.127049212625417 - 0.246331761062075 +
+                                              0.357208872795928)};
+static const double srkn6_kick[] = {0.0414649985182624,
+                                    0.198128671918067,
+                                    -0.0400061921041533,
+                                    0.0752539843015807,
+                                    -0.0115113874206879,
+                                    0.5 - (0.0414649985182624 + 0.198128671918067 -
+                                           0.0400061921041533 + 0.0752539843015807 -
+                                           0.0115113874206879)};
+static const double kahan_li_6_drift[] = {
+    0.39216144400731413928, 0.33259913678935943860, -0.70624617255763935981, 0.08221359629355080023,
+    1 - 2 * (0.39216144400731413928 + 0.33259913678935943860 - 0.70624617255763935981 +
+             0.08221359629355080023)};
+static const double kahan_li_8_drift[] = {
+    0.13020248308889008088,
+    0.56116298177510838456,
+    -0.38947496264484728641,
+    0.15884190655515560090,
+    -0.39590389413323757734,
+    0.18453964097831570709,
+    0.25837438768632204729,
+    0.29501172360931029887,
+    1 - 2 * (0.13020248308889008088 + 0.56116298177510838456 - 0.38947496264484728641 +
+             0.15884190655515560090 - 0.39590389413323757734 + 0.18453964097831570709 +
+             0.25837438768632204729 + 0.29501172360931029887)};
+
+static const splitting symplectic_euler = {1, false, whole, euler_kick};
+static const splitting verlet = {1, true, whole, NULL};
+static const splitting pefrl = {5, true, pefrl_drift, pefrl_kick};
+static const splitting srkn4 = {6, true, srkn4_drift, srkn4_kick};
+static const splitting srkn6 = {11, true, srkn6_drift, srkn6_kick};
+static const splitting kahan_li_6 = {9, true, kahan_li_6_drift, NULL};
+static const splitting kahan_li_8 = {17, true, kahan_li_8_drift, NULL};
+
+/* ---- The methods */
 
 const msr_integrator msr_integrator_symplectic_euler = {
     .name = "symplectic-euler",
@@ -65,7 +182,7 @@ const msr_integrator msr_integrator_symplectic_euler = {
     .bounces = true,
     .evaluations = 1,
     .stability = 2,
-    .damping_stability = 2,
+    .damping_stability = (double)INFINITY,
     .vectors = 1,
     .begin = begin,
     .step = step,
@@ -83,9 +200,97 @@ const msr_integrator msr_integrator_verlet = {
     .bounces = true,
     .evaluations = 1,
     .stability = 2,
-    .damping_stability = 2,
+    .damping_stability = (double)INFINITY,
     .vectors = 1,
     .begin = begin,
     .step = step,
     .coefficients = &verlet,
+};
+
+const msr_integrator msr_integrator_pefrl = {
+    .name = "pefrl",
+    .summary = "5 drifts and 4 kicks: small errors at few evaluations",
+    .reference = "Omelyan, Mryglod & Folk 2002, Comput. Phys. Commun. 146, 188",
+    .order = 4,
+    .damped_order = 2,
+    .symplectic = true,
+    .reversible = true,
+    .splits = true,
+    .evaluations = 4,
+    .stability = 2.989449545907,
+    .damping_stability = (double)INFINITY,
+    .vectors = 1,
+    .begin = begin,
+    .step = step,
+    .coefficients = &pefrl,
+};
+
+const msr_integrator msr_integrator_srkn4 = {
+    .name = "srkn4",
+    .summary = "Runge-Kutta-Nystrom splitting of 6 stages, S6",
+    .reference = "Blanes & Moan 2002, J. Comput. Appl. Math. 142, 313",
+    .order = 4,
+    .damped_order = 2,
+    .symplectic = true,
+    .reversible = true,
+    .splits = true,
+    .evaluations = 6,
+    .stability = 3.163465066580,
+    .damping_stability = (double)INFINITY,
+    .vectors = 1,
+    .begin = begin,
+    .step = step,
+    .coefficients = &srkn4,
+};
+
+const msr_integrator msr_integrator_srkn6 = {
+    .name = "srkn6",
+    .summary = "Runge-Kutta-Nystrom splitting of 11 stages, S11",
+    .reference = "Blanes & Moan 2002, J. Comput. Appl. Math. 142, 313",
+    .order = 6,
+    .damped_order = 2,
+    .symplectic = true,
+    .reversible = true,
+    .splits = true,
+    .evaluations = 11,
+    .stability = 3.141431087865,
+    .damping_stability = (double)INFINITY,
+    .vectors = 1,
+    .begin = begin,
+    .step = step,
+    .coefficients = &srkn6,
+};
+
+const msr_integrator msr_integrator_kahan_li_6 = {
+    .name = "kahan-li-6",
+    .summary = "composition of 9 Verlet steps, damped likewise",
+    .reference = "Kahan & Li 1997, Math. Comp. 66, 1089",
+    .order = 6,
+    .symplectic = true,
+    .reversible = true,
+    .splits = true,
+    .evaluations = 9,
+    .stability = 2.532627388334,
+    .damping_stability = 15,
+    .vectors = 1,
+    .begin = begin,
+    .step = step,
+    .coefficients = &kahan_li_6,
+};
+
+const msr_integrator msr_integrator_kahan_li_8 = {
+    .name = "kahan-li-8",
+    .summary = "composition of 17 Verlet steps, damped likewise",
+    .reference = "Kahan & Li 1997, Math. Comp. 66, 1089",
+    .order = 8,
+    .symplectic = true,
+    .reversible = true,
+    .splits = true,
+    .evaluations = 17,
+    .stability = 3.096438680003,
+    .damping_stability = 9.6,
+    .vectors = 1,
+    .begin = begin,
+    .step = step,
+    .coefficients = &kahan_li_8,
 };

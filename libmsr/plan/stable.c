@@ -12,7 +12,15 @@ static const double midpoint_limit = 2;
 
 static const double most_substeps = 1e9;
 
-static msr_status bound_rates(msr_plan *plan, const msr_view *start, msr_error *err) {
+/* The integrator's limit of h gamma for a force. */
+static double damping_limit(const msr_integrator *integrator, const msr_force *force) {
+  const double limit = integrator->damping_stability;
+  return integrator->splits && !force->flow ? msri_min(limit, midpoint_limit) : limit;
+}
+
+/* `damping`: sum of gamma over its limit. */
+static msr_status bound_rates(msr_plan *plan, const msr_view *start, double *damping,
+                              msr_error *err) {
   double omega2 = 0;
   for (size_t i = 0; i < plan->n_terms; i++) {
     const msri_term *term = &plan->term[i];
@@ -26,19 +34,17 @@ static msr_status bound_rates(msr_plan *plan, const msr_view *start, msr_error *
       return msri_fail(err, MSR_EUSAGE,
                        "force %s: rates must be numbers of 0 or more, not %g and %g",
                        term->force->name, of_x, of_v);
-    const bool exact = plan->figures.integrator->splits && term->force->flow;
+    const double limit = damping_limit(plan->figures.integrator, term->force);
     omega2 += of_x;
-    plan->figures.gamma += exact ? 0 : of_v;
+    plan->figures.gamma += isinf(limit) ? 0 : of_v;
+    *damping += of_v > 0 ? of_v / limit : 0;
   }
   plan->figures.omega = sqrt(omega2);
   return MSR_OK;
 }
 
-static double stable_step(const msr_plan_figures *f) {
-  const double damping = f->integrator->splits ? midpoint_limit : f->integrator->damping_stability;
-  const double share = (f->omega > 0 ? f->omega / f->integrator->stability : 0) +
-                       (f->gamma > 0 ? f->gamma / damping : 0);
-  return 1 / share;
+static double stable_step(const msr_plan_figures *f, double damping) {
+  return 1 / ((f->omega > 0 ? f->omega / f->integrator->stability : 0) + damping);
 }
 
 /* Weight times the height of the picture, per mass, over k L^2 of its springs: how far a fall can
@@ -95,9 +101,10 @@ static msr_status explain(msr_plan *plan, bool automatic, msr_error *err) {
 msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t substeps,
                                  msr_error *err) {
   msr_plan_figures *f = &plan->figures;
-  const msr_status status = bound_rates(plan, start, err);
+  double damping = 0;
+  const msr_status status = bound_rates(plan, start, &damping, err);
   if (status != MSR_OK) return status;
-  f->stable_step = stable_step(f);
+  f->stable_step = stable_step(f, damping);
   f->safe_step = safe_share(plan) * f->stable_step;
   const double needed = f->stable_step > 0 ? fewest(f) : 1;
   if (substeps == 0 && needed > most_substeps)

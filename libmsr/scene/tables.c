@@ -15,6 +15,11 @@ const msr_integrator *const msr_integrators[] = {
     &msr_integrator_euler,
     &msr_integrator_symplectic_euler,
     &msr_integrator_verlet,
+    &msr_integrator_pefrl,
+    &msr_integrator_srkn4,
+    &msr_integrator_srkn6,
+    &msr_integrator_kahan_li_6,
+    &msr_integrator_kahan_li_8,
     &msr_integrator_rk4,
     NULL,
 };
