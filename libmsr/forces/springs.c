@@ -16,17 +16,17 @@ typedef struct ends {
   const double *xi, *yi, *xj, *yj;
 } ends;
 
-/* Forces on the beginnings of `count` springs; stride is 0 or 1. */
+/* Forces on the beginnings of `count` springs; stride is 0 or 1. A spring without length divides by
+ * infinity: a choice of quotients, not of divisors, would keep gcc from vectorising the loop. */
 static inline void tensions(size_t count, const ends *e, const double *k, const double *L,
                             size_t stride, double *restrict fx, double *restrict fy) {
   const double *xi = e->xi, *yi = e->yi, *xj = e->xj, *yj = e->yj;
   for (size_t s = 0; s < count; s++) {
     const double dx = xj[s] - xi[s], dy = yj[s] - yi[s];
     const double l = sqrt(dx * dx + dy * dy);
-    const double f = k[s * stride] * (l - L[s * stride]) / l;
-    const double safe = l > 0 ? f : 0;
-    fx[s] = safe * dx;
-    fy[s] = safe * dy;
+    const double f = k[s * stride] * (l - L[s * stride]) / (l > 0 ? l : (double)INFINITY);
+    fx[s] = f * dx;
+    fy[s] = f * dy;
   }
 }
 
