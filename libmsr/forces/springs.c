@@ -2,10 +2,12 @@
  *
  * A run of springs is computed block by block into a buffer, which is then added at one end and
  * taken away at the other: three loops without aliasing, whatever the run's offset, and the same
- * sum in the same order on every machine. */
-#include "forces/mesh.h"
+ * sum in the same order on every machine. These loops are compiled for vectors of several widths;
+ * the machine that they run on decides between them, not the one that compiled them. */
+#include "forces/springs.h"
 
 #include "base/number.h"
+#include "forces/mesh.h"
 
 #include <math.h>
 
@@ -16,10 +18,17 @@ typedef struct ends {
   const double *xi, *yi, *xj, *yj;
 } ends;
 
+/* What is compiled for several machines must be compiled into each one's kernel. */
+#if defined(__GNUC__)
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
+
 /* Forces on the beginnings of `count` springs; stride is 0 or 1. A spring without length divides by
  * infinity: a choice of quotients, not of divisors, would keep gcc from vectorising the loop. */
-static inline void tensions(size_t count, const ends *e, const double *k, const double *L,
-                            size_t stride, double *restrict fx, double *restrict fy) {
+INLINE void tensions(size_t count, const ends *e, const double *k, const double *L, size_t stride,
+                     double *restrict fx, double *restrict fy) {
   const double *xi = e->xi, *yi = e->yi, *xj = e->xj, *yj = e->yj;
   for (size_t s = 0; s < count; s++) {
     const double dx = xj[s] - xi[s], dy = yj[s] - yi[s];
@@ -30,7 +39,7 @@ static inline void tensions(size_t count, const ends *e, const double *k, const 
   }
 }
 
-static void add_block(const msr_view *s, const msr_run_of_springs *run, size_t from, size_t count,
+INLINE void add_block(const msr_view *s, const msr_run_of_springs *run, size_t from, size_t count,
                       double *fx, double *fy) {
   double bx[BLOCK], by[BLOCK];
   const size_t i = run->first + from, j = i + run->offset;
@@ -45,6 +54,50 @@ static void add_block(const msr_view *s, const msr_run_of_springs *run, size_t f
   for (size_t n = 0; n < count; n++) fy[j + n] -= by[n];
 }
 
+INLINE void add_runs(const msr_view *s, double *fx, double *fy) {
+  for (size_t r = 0; r < s->springs->n_runs; r++) {
+    const msr_run_of_springs *run = &s->springs->run[r];
+    for (size_t from = 0; from < run->count; from += BLOCK) {
+      const size_t left = run->count - from;
+      add_block(s, run, from, left < BLOCK ? left : BLOCK, fx, fy);
+    }
+  }
+}
+
+/* ---- Kernels */
+
+#if defined(__GNUC__) && defined(__x86_64__)
+static bool has_avx512(void) { return __builtin_cpu_supports("avx512f"); }
+static bool has_avx2(void) { return __builtin_cpu_supports("avx2"); }
+
+__attribute__((target("avx512f"))) static void add_avx512(const msr_view *s, double *fx,
+                                                          double *fy) {
+  add_runs(s, fx, fy);
+}
+
+__attribute__((target("avx2"))) static void add_avx2(const msr_view *s, double *fx, double *fy) {
+  add_runs(s, fx, fy);
+}
+#endif
+
+static void add_anywhere(const msr_view *s, double *fx, double *fy) { add_runs(s, fx, fy); }
+
+const msri_springs_kernel msri_springs_kernels[] = {
+#if defined(__GNUC__) && defined(__x86_64__)
+    {"AVX-512", has_avx512, add_avx512},
+    {"AVX2", has_avx2, add_avx2},
+#endif
+    {"any", NULL, add_anywhere},
+};
+
+static const msri_springs_kernel *widest(void) {
+  const msri_springs_kernel *kernel = msri_springs_kernels;
+  while (kernel->runs_here && !kernel->runs_here()) kernel++;
+  return kernel;
+}
+
+/* ---- The force */
+
 static void add_anchor(const msr_view *s, const msr_anchor *a, double *fx, double *fy) {
   double bx, by;
   const ends e = {s->x + a->i, s->y + a->i, &a->x, &a->y};
@@ -55,13 +108,7 @@ static void add_anchor(const msr_view *s, const msr_anchor *a, double *fx, doubl
 
 static msr_status add(const void *self, void *scratch, const msr_view *s, double *fx, double *fy) {
   (void)self, (void)scratch;
-  for (size_t r = 0; r < s->springs->n_runs; r++) {
-    const msr_run_of_springs *run = &s->springs->run[r];
-    for (size_t from = 0; from < run->count; from += BLOCK) {
-      const size_t left = run->count - from;
-      add_block(s, run, from, left < BLOCK ? left : BLOCK, fx, fy);
-    }
-  }
+  widest()->add_runs(s, fx, fy);
   for (size_t a = 0; a < s->springs->n_anchors; a++) add_anchor(s, &s->springs->anchor[a], fx, fy);
   return MSR_OK;
 }
