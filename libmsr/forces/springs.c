@@ -6,6 +6,7 @@
  * the machine that they run on decides between them, not the one that compiled them. */
 #include "forces/springs.h"
 
+#include "base/machine.h"
 #include "base/number.h"
 #include "forces/mesh.h"
 
@@ -18,17 +19,10 @@ typedef struct ends {
   const double *xi, *yi, *xj, *yj;
 } ends;
 
-/* What is compiled for several machines must be compiled into each one's kernel. */
-#if defined(__GNUC__)
-#define INLINE static inline __attribute__((always_inline))
-#else
-#define INLINE static inline
-#endif
-
 /* Forces on the beginnings of `count` springs; stride is 0 or 1. A spring without length divides by
  * infinity: a choice of quotients, not of divisors, would keep gcc from vectorising the loop. */
-INLINE void tensions(size_t count, const ends *e, const double *k, const double *L, size_t stride,
-                     double *restrict fx, double *restrict fy) {
+MSRI_INLINE void tensions(size_t count, const ends *e, const double *k, const double *L,
+                          size_t stride, double *restrict fx, double *restrict fy) {
   const double *xi = e->xi, *yi = e->yi, *xj = e->xj, *yj = e->yj;
   for (size_t s = 0; s < count; s++) {
     const double dx = xj[s] - xi[s], dy = yj[s] - yi[s];
@@ -39,8 +33,8 @@ INLINE void tensions(size_t count, const ends *e, const double *k, const double 
   }
 }
 
-INLINE void add_block(const msr_view *s, const msr_run_of_springs *run, size_t from, size_t count,
-                      double *fx, double *fy) {
+MSRI_INLINE void add_block(const msr_view *s, const msr_run_of_springs *run, size_t from,
+                           size_t count, double *fx, double *fy) {
   double bx[BLOCK], by[BLOCK];
   const size_t i = run->first + from, j = i + run->offset;
   const ends e = {s->x + i, s->y + i, s->x + j, s->y + j};
@@ -54,7 +48,7 @@ INLINE void add_block(const msr_view *s, const msr_run_of_springs *run, size_t f
   for (size_t n = 0; n < count; n++) fy[j + n] -= by[n];
 }
 
-INLINE void add_runs(const msr_view *s, double *fx, double *fy) {
+MSRI_INLINE void add_runs(const msr_view *s, double *fx, double *fy) {
   for (size_t r = 0; r < s->springs->n_runs; r++) {
     const msr_run_of_springs *run = &s->springs->run[r];
     for (size_t from = 0; from < run->count; from += BLOCK) {
@@ -66,26 +60,20 @@ INLINE void add_runs(const msr_view *s, double *fx, double *fy) {
 
 /* ---- Kernels */
 
-#if defined(__GNUC__) && defined(__x86_64__)
-static bool has_avx512(void) { return __builtin_cpu_supports("avx512f"); }
-static bool has_avx2(void) { return __builtin_cpu_supports("avx2"); }
-
-__attribute__((target("avx512f"))) static void add_avx512(const msr_view *s, double *fx,
-                                                          double *fy) {
+#if MSRI_WIDE
+MSRI_AVX512 static void add_avx512(const msr_view *s, double *fx, double *fy) {
   add_runs(s, fx, fy);
 }
 
-__attribute__((target("avx2"))) static void add_avx2(const msr_view *s, double *fx, double *fy) {
-  add_runs(s, fx, fy);
-}
+MSRI_AVX2 static void add_avx2(const msr_view *s, double *fx, double *fy) { add_runs(s, fx, fy); }
 #endif
 
 static void add_anywhere(const msr_view *s, double *fx, double *fy) { add_runs(s, fx, fy); }
 
 const msri_springs_kernel msri_springs_kernels[] = {
-#if defined(__GNUC__) && defined(__x86_64__)
-    {"AVX-512", has_avx512, add_avx512},
-    {"AVX2", has_avx2, add_avx2},
+#if MSRI_WIDE
+    {"AVX-512", msri_has_avx512, add_avx512},
+    {"AVX2", msri_has_avx2, add_avx2},
 #endif
     {"any", NULL, add_anywhere},
 };

@@ -1,6 +1,7 @@
 /* runge_kutta.c - explicit Runge-Kutta methods for q' = v, v' = a(t, q, v) (Hairer, Norsett &
  * Wanner, Solving Ordinary Differential Equations I, 1993, II.1). A method is a Butcher tableau. */
 #include "base/base.h"
+#include "base/vector.h"
 
 #include <string.h>
 
@@ -29,10 +30,7 @@ static stages carve(int count, size_t n, double *work) {
 static void add_rates(size_t n, int count, double h, const double *w, double *const *rates,
                       double *sum) {
   for (int s = 0; s < count; s++) {
-    const double hw = h * w[s];
-    if (hw == 0) continue;
-    const double *rate = rates[s];
-    for (size_t i = 0; i < n; i++) sum[i] += hw * rate[i];
+    if (h * w[s] != 0) msri_add_scaled(n, h * w[s], rates[s], sum);
   }
 }
 

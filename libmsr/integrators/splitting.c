@@ -9,6 +9,7 @@
  * order 2; symplectic Euler has a whole one after its kick (at both ends, damping would lower the
  * limit of kick and drift). */
 #include "base/base.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -59,8 +60,14 @@ typedef struct stage {
 } stage;
 
 static void kick(const stage *s, double b) {
-  const double bh = b * s->h;
-  for (size_t i = 0; b != 0 && i < s->system->n; i++) s->v[i] += bh * s->a[i];
+  if (b != 0) msri_add_scaled(s->system->n, b * s->h, s->a, s->v);
+}
+
+static msr_status drift(const stage *s, double share, const double *bend) {
+  const double h = share * s->h;
+  if (s->system->drift) return msr_system_drift(s->system, h, s->v, bend, s->q, s->v);
+  msri_add_scaled(s->system->n, h, s->v, s->q);
+  return MSR_OK;
 }
 
 static msr_status damp(const stage *s, double share, bool backward) {
@@ -112,7 +119,7 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
     if (kicks && !has) status = accelerate(&s);
     if (status == MSR_OK) status = pass(&s, &at);
     if (j == row->drifts || status != MSR_OK) break;
-    status = msr_system_drift(system, drift_of(row, j) * s.h, v, bend, q, v);
+    status = drift(&s, drift_of(row, j), bend);
     share += drift_of(row, j);
   }
   return status;

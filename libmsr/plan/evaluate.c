@@ -2,6 +2,8 @@
  * a drift that the plan's contact may stop. Each callback runs down the list of what is on. */
 #include "plan/state.h"
 
+#include "base/vector.h"
+
 #include <string.h>
 
 static bool any(const msr_force *force) { return force->add != NULL; }
@@ -32,8 +34,7 @@ msr_status msri_state_add_forces(msr_state *state, const msr_view *view,
 /* f[2n] / m, times the inverse: divisions would take half as long as the springs of a block. */
 static void divide_by_mass(const msr_view *s, double *f) {
   if (s->m_stride == 0) {
-    const double w = 1 / s->m[0];
-    for (size_t i = 0; i < 2 * s->n; i++) f[i] *= w;
+    msri_scale(2 * s->n, 1 / s->m[0], f);
     return;
   }
   for (size_t i = 0; i < s->n; i++) {

@@ -1,0 +1,13 @@
+/* vector.h - what integrators do to vectors in every stage. */
+#ifndef MSRI_VECTOR_H
+#define MSRI_VECTOR_H
+
+#include <stddef.h>
+
+/* y[n] += c x[n]; x and y don't overlap. */
+void msri_add_scaled(size_t n, double c, const double *restrict x, double *restrict y);
+
+/* y[n] *= c. */
+void msri_scale(size_t n, double c, double *y);
+
+#endif

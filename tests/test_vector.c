@@ -1,0 +1,50 @@
+/* test_vector.c - what is done to vectors has the bits of a plain loop, whatever their length,
+ * where they lie and how wide the machine's own vectors are. */
+#include "base/vector.h"
+
+#include "scenes.h"
+
+enum { MOST = 70, SHIFTS = 4 };
+
+static void fill(double *a, uint64_t *dice) {
+  for (size_t i = 0; i < MOST; i++) a[i] = uniform(dice, -10, 10);
+}
+
+static void sums_are_those_of_a_plain_loop(void **state) {
+  (void)state;
+  uint64_t dice = 1;
+  double x[MOST], y[MOST], expected[MOST];
+  for (size_t n = 0; n + 2 * SHIFTS <= MOST; n++) {
+    const size_t i = random_below(&dice, SHIFTS), j = random_below(&dice, SHIFTS);
+    const double c = uniform(&dice, -1, 1);
+    fill(x, &dice);
+    fill(y, &dice);
+    memcpy(expected, y, sizeof y);
+    for (size_t k = 0; k < n; k++) expected[j + k] += c * x[i + k];
+    msri_add_scaled(n, c, x + i, y + j);
+    assert_memory_equal(y, expected, sizeof y);
+  }
+}
+
+static void products_are_those_of_a_plain_loop(void **state) {
+  (void)state;
+  uint64_t dice = 2;
+  double y[MOST], expected[MOST];
+  for (size_t n = 0; n + SHIFTS <= MOST; n++) {
+    const size_t i = random_below(&dice, SHIFTS);
+    const double c = uniform(&dice, -1, 1);
+    fill(y, &dice);
+    memcpy(expected, y, sizeof y);
+    for (size_t k = 0; k < n; k++) expected[i + k] *= c;
+    msri_scale(n, c, y + i);
+    assert_memory_equal(y, expected, sizeof y);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(sums_are_those_of_a_plain_loop),
+      cmocka_unit_test(products_are_those_of_a_plain_loop),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
