@@ -1,0 +1,25 @@
+/* ladder.h - the runs of one method, from the largest step that is sensible to ever smaller ones.
+ */
+#ifndef MSRI_LADDER_H
+#define MSRI_LADDER_H
+
+#include "accuracy/setting.h"
+
+typedef struct msri_ladder {
+  const msr_integrator *integrator;
+  uint64_t stable; /* the fewest substeps that are stable at any stretch */
+  bool coarser;    /* still going to larger steps than that */
+  bool done;
+  msr_plan_options options; /* of the next run */
+  double evaluations;       /* that the next run may take */
+} msri_ladder;
+
+/* `iterations`: of a run. As msr_plan_create. */
+msr_status msri_ladder_begin(const msri_setting *setting, const msr_integrator *integrator,
+                             uint64_t iterations, msri_ladder *ladder, msr_error *err);
+
+/* What follows the run that was measured. */
+void msri_ladder_next(const msri_setting *setting, msri_ladder *ladder,
+                      const msr_accuracy_point *measured);
+
+#endif
