@@ -1,119 +1,261 @@
 /* choose.c - the method and step that bring every mass within an error at the least work.
  *
- * Every method is tried against the reference from its largest step on, by the step that its order
- * foretells, until it is as accurate as asked or takes more work than the best so far. */
+ * Every method aims at the error, against a reference, on that very scene; the one whose next run
+ * promises to be the cheapest is always the next, until none can be cheaper than the best that was
+ * as accurate as asked. Over the whole run that is a proof: the run to come is the one that was
+ * tried. If the whole is too long for the budget, this is done on its beginning, then on as much
+ * as can be afforded, with those that are still in question, and errors are taken to grow on as
+ * they did: e ~ t^g with g as measured, but at least 1 for symplectic methods and 2 for others, and
+ * twice that to be safe; with supports nothing is promised beyond what was tried.
+ *
+ * Work is counted in evaluations, and planned by the time that they take on a common machine, so
+ * that the choice is the same again. */
+#include "accuracy/aim.h"
 #include "accuracy/ladder.h"
-#include "accuracy/measure.h"
 
 #include "base/number.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-static const double default_budget = 10, reference_share = 0.5; /* [s] */
-static const double own_share = 0.1; /* of the error, that the reference may have */
+static const double default_budget = 10;   /* [s] */
+static const double reference_share = 0.5; /* of it */
+static const double own_share = 0.1;       /* of the error, that the reference may have */
+static const double nominal = 3e-9;        /* time of an evaluation per mass and spring [s] */
+static const double trials = 60;           /* work of a choice over that of Verlet's largest step */
+static const double in_question = 4;       /* work of a method that may yet be the best, over it */
 
-typedef struct search {
+typedef struct choosing {
   msri_setting setting;
   msri_reference reference;
-  double error;
-  msr_accuracy_point best; /* integrator NULL: none yet */
-} search;
+  size_t all;    /* instants of the whole; setting.n are those of the stage under way */
+  double error;  /* asked for */
+  double wanted; /* of a run, in the stage under way */
+  msri_aim *aim; /* [n] */
+  size_t n;
+  msri_measured best; /* integrator NULL: none yet */
+} choosing;
 
-/* ---- One method */
+/* What the best is known from. */
+typedef struct finding {
+  msri_measured best;
+  size_t n;    /* instants up to the horizon */
+  double own;  /* error of the reference */
+  bool parted; /* the reference goes no further */
+} finding;
 
-static bool as_asked(const search *s, const msr_accuracy_point *p) {
-  return p->stable && p->max + msri_reference_error(&s->reference) <= s->error;
+/* ---- Methods */
+
+static bool eligible(const msr_integrator *integrator) {
+  return integrator->adaptive || integrator->stability > 0;
 }
 
-/* The step that the order foretells to be just small enough. */
-static void foretell(const search *s, const msr_accuracy_point *p, msri_ladder *l) {
-  const double most = 1e9, wanted = 0.7 * (s->error - msri_reference_error(&s->reference));
-  if (l->integrator->adaptive || !p->stable) {
-    msri_ladder_next(&s->setting, l, p);
-    return;
-  }
-  const double times = pow(p->max / wanted, 1 / msri_max(1, l->integrator->order));
-  const double substeps = ceil((double)p->substeps * msri_min(msri_max(times, 1.1), 100));
-  l->done = substeps > most;
-  l->options.substeps = l->done ? 1 : (uint64_t)substeps;
-  l->evaluations = (double)p->evaluations * substeps / (double)p->substeps;
-}
-
-static bool promising(const search *s, const msri_ladder *l) {
-  return !l->done && (!s->best.integrator || l->evaluations < (double)s->best.evaluations);
-}
-
-static msr_status try_method(search *s, const msr_integrator *integrator, msr_error *err) {
-  const uint64_t iterations = s->setting.iteration[s->reference.n - 1];
-  msri_ladder l;
-  msr_status status = msri_ladder_begin(&s->setting, integrator, iterations, &l, err);
-  l.coarser = false;
-  while (status == MSR_OK && promising(s, &l)) {
-    msr_accuracy_point p;
-    msri_watch_next(&s->setting.watch, 1, "choosing: %s", integrator->name);
-    status = msri_measure(&s->setting, &s->reference, NULL, &l.options, s->setting.far, &p, err);
+static msr_status begin_aims(choosing *c, const msr_accuracy_options *options, msr_error *err) {
+  const bool given = options->n_integrators > 0;
+  const msr_integrator *const *list = given ? options->integrators : msr_integrators;
+  const uint64_t iterations = c->setting.iteration[c->reference.n - 1];
+  const bool careful = c->reference.n < c->all;
+  size_t n = options->n_integrators;
+  while (!given && list[n]) n++;
+  c->aim = msri_alloc(n, sizeof *c->aim, "the methods", err);
+  if (!c->aim) return MSR_ENOMEM;
+  for (size_t i = 0; i < n; i++) {
+    if (!eligible(list[i])) continue;
+    const msr_status status =
+        msri_aim_begin(&c->setting, list[i], iterations, careful, c->wanted, &c->aim[c->n], err);
     if (status != MSR_OK) return status;
-    if (as_asked(s, &p)) {
-      if (!s->best.integrator || p.evaluations < s->best.evaluations) s->best = p;
-      return MSR_OK;
-    }
-    foretell(s, &p, &l);
+    c->n++;
+  }
+  return MSR_OK;
+}
+
+/* The aim whose next run is the shortest, if it is shorter than the best. */
+static msri_aim *shortest(choosing *c) {
+  msri_aim *least = NULL;
+  double most = c->best.point.integrator ? (double)c->best.point.evaluations : HUGE_VAL;
+  for (size_t i = 0; i < c->n; i++) {
+    if (c->aim[i].done || !(c->aim[i].evaluations < most)) continue;
+    least = &c->aim[i];
+    most = least->evaluations;
+  }
+  return least;
+}
+
+static msr_status try(choosing *c, msri_aim *aim, msr_error *err) {
+  const bool any = c->best.point.integrator != NULL;
+  const msri_limits limits = {msri_min(100 * c->error, c->setting.far),
+                              any ? c->best.point.evaluations : UINT64_MAX};
+  const msr_plan_options options = msri_aim_options(&c->setting, aim);
+  msri_measured m;
+  msri_watch_next(&c->setting.watch, 1, "choosing: %s", aim->integrator->name);
+  const msr_status status =
+      msri_measure(&c->setting, &c->reference, NULL, &options, &limits, &m, err);
+  if (c->setting.watch.over) return MSR_OK;
+  aim->done = status == MSR_EUSAGE;
+  if (status != MSR_OK) return aim->done ? MSR_OK : status;
+  const bool good = m.point.stable && m.point.max <= c->wanted;
+  if (good && (!any || m.point.evaluations < c->best.point.evaluations)) c->best = m;
+  msri_aim_next(aim, &m, c->wanted);
+  return MSR_OK;
+}
+
+static msr_status try_all(choosing *c, msr_error *err) {
+  msr_status status = MSR_OK;
+  for (msri_aim *next = shortest(c); next && status == MSR_OK; next = shortest(c)) {
+    status = try(c, next, err);
+    if (c->setting.watch.over) break;
   }
   return status;
 }
 
-static msr_status try_all(search *s, const msr_accuracy_options *options, msr_error *err) {
-  const bool all = options->n_integrators == 0;
-  const msr_integrator *const *list = all ? msr_integrators : options->integrators;
-  for (size_t i = 0; all ? list[i] != NULL : i < options->n_integrators; i++) {
-    if (list[i]->stability <= 0 && !list[i]->adaptive) continue;
-    const msr_status status = try_method(s, list[i], err);
-    if (s->setting.watch.status != MSR_OK)
-      return msri_fail(err, s->setting.watch.status, "stopped before the choice was made");
-    if (s->setting.watch.over) return MSR_OK;
-    if (status != MSR_OK && status != MSR_EUSAGE) return status;
-  }
+/* ---- Stages */
+
+static double nominal_seconds(const choosing *c, double evaluations) {
+  const msr_plan_figures f = msr_plan_describe(c->setting.plan);
+  const double small = 20;
+  return evaluations * nominal * ((double)f.masses + (double)f.springs + small);
+}
+
+/* Time of an instant over that of the whole run. */
+static double share_at(const choosing *c, size_t n) {
+  return (double)c->setting.iteration[n - 1] / (double)c->setting.iteration[c->all - 1];
+}
+
+/* The last instant within a share of the run; the first at least. */
+static size_t instants_within(const choosing *c, double share) {
+  size_t n = c->all;
+  while (n > 1 && share_at(c, n) > share) n--;
+  return n;
+}
+
+/* One stage, up to setting.n and with an error that shall be at most `error` there. */
+static msr_status stage(choosing *c, double error, const msr_accuracy_options *options,
+                        finding *found, msr_error *err) {
+  const double own = own_share * error;
+  const msri_reference_goal goal = {own, own, reference_share};
+  msri_reference_clear(&c->reference);
+  msr_status status = msri_reference_find(&c->setting, &goal, &c->reference, err);
+  if (status != MSR_OK) return status;
+  c->wanted = error - msri_reference_error(&c->reference);
+  c->best = (msri_measured){0};
+  if (!c->aim) status = begin_aims(c, options, err);
+  if (status == MSR_OK) status = try_all(c, err);
+  if (status != MSR_OK || !c->best.point.integrator) return status;
+  *found = (finding){c->best, c->reference.n, msri_reference_error(&c->reference),
+                     c->reference.n < c->setting.n};
   return MSR_OK;
+}
+
+/* Methods whose work isn't far above the best's go on, for a run `times` as long. */
+static void go_on(choosing *c, double times) {
+  const double best = (double)c->best.point.evaluations;
+  for (size_t i = 0; i < c->n; i++) {
+    msri_aim *a = &c->aim[i];
+    const double r = a->passed > 0 ? a->passed : a->r;
+    const double work = a->evaluations * pow(r / a->r, a->growth);
+    *a = (msri_aim){.integrator = a->integrator,
+                    .order = a->order,
+                    .growth = a->growth,
+                    .coarsest = a->coarsest,
+                    .r = r,
+                    .evaluations = times * work,
+                    .done = !(work <= in_question * best)};
+  }
+}
+
+/* Growth of the error with time: e ~ t^growth. */
+static double growth_of(const finding *f) {
+  const msr_integrator *integrator = f->best.point.integrator;
+  const double least = integrator->symplectic || integrator->reversible ? 1 : 2;
+  const double times = f->best.error / f->best.early;
+  return times > 0 && isfinite(times) ? msri_max(least, log(times) / log(4)) : least;
+}
+
+/* How far the whole run is beyond the first stage, and how far the second can go. */
+static size_t second_length(const choosing *c, const finding *f) {
+  const double budget = 0.8 * c->setting.watch.budget;
+  const double spent = nominal_seconds(c, (double)c->setting.evaluations);
+  const double work =
+      (double)c->reference.work.evaluations + in_question * (double)f->best.point.evaluations;
+  const double share = (budget - spent) / nominal_seconds(c, work) * share_at(c, f->n);
+  return share > 0 ? instants_within(c, share) : 1;
+}
+
+static double first_share(const choosing *c) {
+  const msr_plan_figures f = msr_plan_describe(c->setting.plan);
+  const double steps = (double)c->setting.iteration[c->all - 1] * ceil(f.dt / f.stable_step);
+  const double share = c->setting.watch.budget / 4 / nominal_seconds(c, trials * steps);
+  return share >= 0.5 ? 1 : share;
+}
+
+static msr_status choose(choosing *c, const msr_accuracy_options *options, finding *found,
+                         msr_error *err) {
+  c->setting.n = instants_within(c, first_share(c));
+  msr_status status = stage(c, c->error * pow(share_at(c, c->setting.n), 1.5), options, found, err);
+  if (status != MSR_OK || found->n == 0 || found->parted || found->n == c->all) return status;
+  const size_t n = second_length(c, found);
+  if (share_at(c, n) < 2 * share_at(c, found->n) || c->setting.watch.over) return status;
+  go_on(c, share_at(c, n) / share_at(c, found->n));
+  c->setting.n = n;
+  const double left = pow(share_at(c, n), growth_of(found)) / (n < c->all ? 2 : 1);
+  msr_error said;
+  status = stage(c, c->error * left, options, found, &said);
+  return c->setting.watch.over ? MSR_OK : status;
 }
 
 /* ---- The choice */
 
-static void explain(const search *s, double whole, msr_accuracy_choice *choice) {
-  const msr_accuracy_point *p = &s->best;
-  char step[64], horizon[64] = "";
+/* The largest error at a share of the run that is at or beyond what was tried. */
+static double foretold(const choosing *c, const finding *f, double share) {
+  const double tried = share_at(c, f->n), error = f->best.point.max + f->own;
+  return share > tried ? 2 * error * pow(share / tried, growth_of(f)) : error;
+}
+
+/* Share of the run over which the error can be promised. */
+static double promised(const choosing *c, const finding *f) {
+  const double tried = share_at(c, f->n);
+  if (f->n == c->all || f->parted || c->setting.contacts) return tried;
+  const double most = tried * pow(c->error / foretold(c, f, tried * (1 + 1e-9)), 1 / growth_of(f));
+  return msri_min(1, msri_max(tried, most));
+}
+
+static void explain(const choosing *c, const finding *f, msr_accuracy_choice *choice) {
+  const msr_accuracy_point *p = &f->best.point;
+  const double whole = c->setting.until, tried = whole * share_at(c, f->n);
+  char step[64], how[128] = "";
   if (p->integrator->adaptive)
-    msri_format(step, sizeof step, "tolerance %g", p->atol);
+    msri_format(step, sizeof step, "tolerance %.2g", p->atol);
   else
-    msri_format(step, sizeof step, "%llu substeps", (unsigned long long)p->substeps);
-  if (choice->horizon < whole)
-    msri_format(horizon, sizeof horizon, " up to %.4g s of %.4g s", choice->horizon, whole);
+    msri_format(step, sizeof step, "%llu substep%s", (unsigned long long)p->substeps,
+                p->substeps > 1 ? "s" : "");
+  if (f->parted)
+    msri_format(how, sizeof how, ", up to %.4g s: beyond, no reference is that sure", tried);
+  else if (f->n < c->all)
+    msri_format(how, sizeof how, ", tried up to %.4g s of %.4g s", tried, whole);
   msri_format(choice->reason, sizeof choice->reason,
-              "%s with %s is the least work for %g px: largest error %.2g px%s",
-              p->integrator->name, step, s->error, choice->error, horizon);
+              "%s with %s takes the least work for %g px: largest error %.2g px%s",
+              p->integrator->name, step, c->error, choice->error, how);
 }
 
-static msr_status conclude(const search *s, msr_accuracy_choice *choice, msr_error *err) {
-  const msr_accuracy_point *p = &s->best;
-  if (!p->integrator)
-    return msri_fail(err, MSR_EUNSTABLE, "nothing tried is within %g px; ask for less", s->error);
-  const double horizon = msri_setting_time(&s->setting, s->reference.n - 1);
+static msr_status conclude(const choosing *c, const finding *f, msr_accuracy_choice *choice,
+                           msr_error *err) {
+  const msr_accuracy_point *p = &f->best.point;
+  if (f->n == 0 && c->setting.watch.over)
+    return msri_fail(err, MSR_EUNSTABLE, "nothing tried in %g s was within %g px; raise the budget",
+                     c->setting.watch.budget, c->error);
+  if (f->n == 0)
+    return msri_fail(err, MSR_EUNSTABLE,
+                     "nothing tried is within %g px; ask for a larger error, or for less time",
+                     c->error);
+  const double share = promised(c, f);
   *choice = (msr_accuracy_choice){
-      .options = msri_setting_options(&s->setting, p->integrator, p->substeps, p->atol),
-      .error = p->max + msri_reference_error(&s->reference),
-      .seconds = p->seconds * s->setting.until / horizon,
-      .horizon = msri_min(horizon, s->setting.until),
+      .options = msri_setting_options(&c->setting, p->integrator, p->substeps, p->atol),
+      .error = foretold(c, f, share),
+      .seconds = p->seconds / share_at(c, f->n),
+      .horizon = share * c->setting.until,
   };
-  explain(s, s->setting.until, choice);
+  explain(c, f, choice);
   return MSR_OK;
-}
-
-static msr_status choose(search *s, const msr_accuracy_options *options,
-                         msr_accuracy_choice *choice, msr_error *err) {
-  const double own = own_share * s->error;
-  const msri_reference_goal goal = {own, own, reference_share};
-  msr_status status = msri_reference_find(&s->setting, &goal, &s->reference, err);
-  if (status == MSR_OK) status = try_all(s, options, err);
-  return status == MSR_OK ? conclude(s, choice, err) : status;
 }
 
 msr_status msr_accuracy_choose(const msr_scene *scene, double error,
@@ -123,11 +265,17 @@ msr_status msr_accuracy_choose(const msr_scene *scene, double error,
   if (!options) options = &defaults;
   if (!(error > 0 && isfinite(error)))
     return msri_fail(err, MSR_EUSAGE, "the error must be a number above 0, not %g", error);
-  search s = {.error = error};
-  msr_status status = msri_setting_open(&s.setting, scene, options, default_budget, err);
+  choosing c = {.error = error};
+  finding found = {.n = 0};
+  msr_status status = msri_setting_open(&c.setting, scene, options, default_budget, err);
   if (status != MSR_OK) return status;
-  status = choose(&s, options, choice, err);
-  msri_reference_clear(&s.reference);
-  msri_setting_close(&s.setting);
+  c.all = c.setting.n;
+  status = choose(&c, options, &found, err);
+  if (c.setting.watch.status != MSR_OK)
+    status = msri_fail(err, c.setting.watch.status, "stopped before the choice was made");
+  if (status == MSR_OK) status = conclude(&c, &found, choice, err);
+  msri_reference_clear(&c.reference);
+  msri_setting_close(&c.setting);
+  free(c.aim);
   return status;
 }

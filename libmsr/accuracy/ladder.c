@@ -8,38 +8,44 @@
 
 #include <math.h>
 
-static const double coarsest_atol = 0.1, finest_atol = 0.5e-13, atol_ratio = 10;
-static const double most_substeps = 1e9;
+static const double atol_ratio = 10;
 
-static uint64_t adaptive_substeps(const msri_setting *setting, double atol) {
-  return setting->contacts ? (uint64_t)ceil(sqrt(coarsest_atol / atol) * (1 - 1e-9)) : 1;
+msr_plan_options msri_ladder_tolerance(const msri_setting *setting,
+                                       const msr_integrator *integrator, double atol) {
+  const double substeps = ceil(sqrt(MSRI_COARSEST_ATOL / atol) * (1 - 1e-9));
+  const bool many = setting->contacts && substeps > 1;
+  return msri_setting_options(setting, integrator, many ? (uint64_t)substeps : 1, atol);
 }
 
-/* What a step may take where the method doesn't say. */
-static double evaluations_per_step(const msr_integrator *integrator) {
-  const double unknown = 20;
-  return integrator->evaluations > 0 ? integrator->evaluations : unknown;
+/* An adaptive method takes steps of about Verlet's, some ten evaluations each. */
+double msri_ladder_evaluations(const msri_setting *setting, const msr_integrator *integrator,
+                               uint64_t iterations, uint64_t substeps) {
+  static const double unknown = 10;
+  const msr_plan_figures verlet = msr_plan_describe(setting->plan);
+  const double n = (double)iterations;
+  if (integrator->adaptive) return unknown * n * msri_max(1, verlet.dt / verlet.stable_step);
+  return n * (double)substeps * (integrator->evaluations > 0 ? integrator->evaluations : unknown);
 }
 
 msr_status msri_ladder_begin(const msri_setting *setting, const msr_integrator *integrator,
                              uint64_t iterations, msri_ladder *ladder, msr_error *err) {
   *ladder = (msri_ladder){.integrator = integrator};
-  const msr_status status = msri_setting_stable(setting, integrator, &ladder->stable, err);
+  const msr_status status = msri_setting_fewest(setting, integrator, false, &ladder->stable, err);
   if (status != MSR_OK) return status;
   ladder->done = ladder->stable == 0;
-  const uint64_t substeps = integrator->adaptive ? 1 : ladder->stable;
-  ladder->coarser = substeps > 1;
-  ladder->options = msri_setting_options(setting, integrator, substeps, coarsest_atol);
-  ladder->evaluations = (double)iterations * (double)substeps * evaluations_per_step(integrator);
+  ladder->coarser = !integrator->adaptive && ladder->stable > 1;
+  ladder->options = integrator->adaptive
+                        ? msri_ladder_tolerance(setting, integrator, MSRI_COARSEST_ATOL)
+                        : msri_setting_options(setting, integrator, ladder->stable, 0);
+  ladder->evaluations = msri_ladder_evaluations(setting, integrator, iterations, ladder->stable);
   return MSR_OK;
 }
 
 static void next_tolerance(const msri_setting *setting, msri_ladder *ladder,
                            const msr_accuracy_point *measured) {
   const double atol = ladder->options.atol / atol_ratio;
-  ladder->done = atol < finest_atol;
-  ladder->options.atol = atol;
-  ladder->options.substeps = adaptive_substeps(setting, atol);
+  ladder->done = atol < MSRI_FINEST_ATOL;
+  ladder->options = msri_ladder_tolerance(setting, ladder->integrator, atol);
   ladder->evaluations = 1.5 * (double)measured->evaluations;
 }
 
@@ -51,7 +57,7 @@ static void next_step(msri_ladder *ladder, const msr_accuracy_point *measured) {
     const bool turning = ladder->options.substeps <= ladder->stable;
     substeps = 2 * (turning ? ladder->stable : ladder->options.substeps);
   }
-  ladder->done = (double)substeps > most_substeps;
+  ladder->done = (double)substeps > MSRI_MOST_SUBSTEPS;
   ladder->options.substeps = substeps;
   ladder->evaluations = (double)measured->evaluations * (double)substeps / previous;
 }

@@ -5,6 +5,18 @@
 
 #include "accuracy/setting.h"
 
+#define MSRI_COARSEST_ATOL 0.1 /* [px] */
+#define MSRI_FINEST_ATOL   0.5e-13
+#define MSRI_MOST_SUBSTEPS 1e9
+
+/* Evaluations that a run may take, where none was made. */
+double msri_ladder_evaluations(const msri_setting *setting, const msr_integrator *integrator,
+                               uint64_t iterations, uint64_t substeps);
+
+/* Options of an adaptive run. */
+msr_plan_options msri_ladder_tolerance(const msri_setting *setting,
+                                       const msr_integrator *integrator, double atol);
+
 typedef struct msri_ladder {
   const msr_integrator *integrator;
   uint64_t stable; /* the fewest substeps that are stable at any stretch */

@@ -37,79 +37,110 @@ static size_t differing(const msri_screens *screens, const double *q, const msr_
 
 /* ---- Errors */
 
-typedef struct sums {
+/* A run under way. */
+typedef struct course {
+  msri_setting *setting;
+  const msri_reference *reference;
+  const msri_screens *screens; /* NULL: none */
+  msri_trial trial;
+  size_t done; /* instants */
   double squares, max, energy, scale, pixels;
-} sums;
+  double early; /* max in the first quarter */
+} course;
 
-static void compare_positions(const double *q, const msr_state *run, sums *s) {
-  const size_t n = run->plan->figures.masses;
+static void compare_positions(course *c, const double *q) {
+  const msr_state *run = c->trial.state;
+  const size_t n = c->setting->masses;
   double most = 0;
   for (size_t i = 0; i < n; i++) {
     const double dx = run->q[i] - q[i], dy = run->q[n + i] - q[n + i], d2 = dx * dx + dy * dy;
-    s->squares += d2;
+    c->squares += d2;
     if (!(d2 <= most)) most = d2;
   }
-  if (!(sqrt(most) <= s->max)) s->max = sqrt(most);
+  if (!(sqrt(most) <= c->max)) c->max = sqrt(most);
 }
 
-static void compare_energy(double truth, const msr_state *run, sums *s) {
-  const msr_energy e = msri_state_energies(run);
-  s->energy = msri_max(s->energy, fabs(e.total - truth));
-  s->scale = msri_max(s->scale, e.kinetic + e.spring);
+static void compare_energy(course *c, double truth) {
+  const msr_energy e = msri_state_energies(c->trial.state);
+  c->energy = msri_max(c->energy, fabs(e.total - truth));
+  c->scale = msri_max(c->scale, e.kinetic + e.spring);
+}
+
+static uint64_t end_of(const course *c) { return c->setting->iteration[c->reference->n - 1]; }
+
+static void compare(course *c) {
+  const double *q = c->reference->q + c->done * 2 * c->setting->masses;
+  compare_positions(c, q);
+  compare_energy(c, c->reference->energy[c->done]);
+  if (c->screens && c->screens->state)
+    c->pixels += (double)differing(c->screens, q, c->trial.state);
+  if (4 * c->setting->iteration[c->done] <= end_of(c)) c->early = c->max;
+  c->done++;
 }
 
 /* Up to the horizon, or to where the error is beyond `most`. */
-static msr_status follow(msri_setting *setting, const msri_reference *reference,
-                         const msri_screens *screens, msri_trial *trial, double most, sums *s,
-                         msr_error *err) {
-  for (size_t i = 0; i < reference->n; i++) {
-    const double *q = reference->q + i * 2 * setting->masses;
-    const msr_status status = msri_trial_step(setting, trial, setting->iteration[i], err);
+static msr_status follow(course *c, double most, msr_error *err) {
+  while (c->done < c->reference->n) {
+    const msr_status status =
+        msri_trial_step(c->setting, &c->trial, c->setting->iteration[c->done], err);
     if (status != MSR_OK) return status;
-    compare_positions(q, trial->state, s);
-    compare_energy(reference->energy[i], trial->state, s);
-    if (!(s->max <= most)) return MSR_EUNSTABLE;
-    if (screens && screens->state) s->pixels += (double)differing(screens, q, trial->state);
+    compare(c);
+    if (!(c->max <= most)) return MSR_EUNSTABLE;
   }
   return MSR_OK;
 }
 
-static void fill(const msri_setting *setting, const msri_reference *reference,
-                 const msri_screens *screens, const sums *s, msr_accuracy_point *point) {
-  const msr_plan_figures f = msr_plan_describe(setting->plan);
-  const double instants = (double)reference->n, pixels = (double)f.width * (double)f.height;
-  point->rms = sqrt(s->squares / (instants * (double)setting->masses));
-  point->max = s->max;
-  point->drift = s->scale > 0 ? s->energy / s->scale : 0;
-  if (screens && screens->state) point->pixels = s->pixels / (instants * pixels);
+static msr_accuracy_point blank(const msr_plan_options *options) {
+  const double none = (double)NAN, infinite = (double)INFINITY;
+  return (msr_accuracy_point){.integrator = options->integrator,
+                              .substeps = options->substeps,
+                              .atol = options->atol,
+                              .seconds = none,
+                              .rms = infinite,
+                              .max = infinite,
+                              .drift = none,
+                              .pixels = none,
+                              .order = none};
+}
+
+static void fill(const course *c, msr_accuracy_point *point) {
+  const msr_plan_figures f = msr_plan_describe(c->setting->plan);
+  const double instants = (double)c->done, pixels = (double)f.width * (double)f.height;
+  point->stable = true;
+  point->seconds = c->trial.seconds;
+  point->rms = sqrt(c->squares / (instants * (double)c->setting->masses));
+  point->max = c->max;
+  point->drift = c->scale > 0 ? c->energy / c->scale : 0;
+  if (c->screens && c->screens->state) point->pixels = c->pixels / (instants * pixels);
+}
+
+static msr_status run(course *c, const msri_limits *limits, msri_measured *measured,
+                      msr_error *err) {
+  msri_watch *watch = &c->setting->watch;
+  watch->most = limits->evaluations;
+  const msr_status status = follow(c, limits->error, err);
+  const msr_work work = msr_state_work(c->trial.state);
+  msr_accuracy_point *point = &measured->point;
+  point->steps = work.steps;
+  point->evaluations = work.evaluations;
+  if (status == MSR_OK) fill(c, point);
+  measured->error = c->max;
+  measured->early = c->early;
+  measured->share = (double)c->trial.state->iteration / (double)end_of(c);
+  const bool ended = (status == MSR_EUNSTABLE || watch->costly) && !watch->over;
+  return ended ? MSR_OK : status;
 }
 
 msr_status msri_measure(msri_setting *setting, const msri_reference *reference,
-                        const msri_screens *screens, const msr_plan_options *options, double most,
-                        msr_accuracy_point *point, msr_error *err) {
-  const double none = (double)NAN, infinite = (double)INFINITY;
-  *point = (msr_accuracy_point){.integrator = options->integrator,
-                                .substeps = options->substeps,
-                                .atol = options->atol,
-                                .seconds = none,
-                                .rms = infinite,
-                                .max = infinite,
-                                .drift = none,
-                                .pixels = none,
-                                .order = none};
-  msri_trial trial;
-  msr_status status = msri_trial_open(setting, options, &trial, err);
+                        const msri_screens *screens, const msr_plan_options *options,
+                        const msri_limits *limits, msri_measured *measured, msr_error *err) {
+  course c = {.setting = setting, .reference = reference, .screens = screens};
+  *measured = (msri_measured){.point = blank(options)};
+  msr_status status = msri_trial_open(setting, options, &c.trial, err);
   if (status != MSR_OK) return status;
-  sums s = {0};
-  status = follow(setting, reference, screens, &trial, most, &s, err);
-  const msr_work work = msr_state_work(trial.state);
-  point->steps = work.steps;
-  point->evaluations = work.evaluations;
-  point->stable = status == MSR_OK;
-  if (status == MSR_OK) fill(setting, reference, screens, &s, point);
-  if (status == MSR_OK) point->seconds = trial.seconds;
-  msri_trial_close(&trial);
-  return status == MSR_EUNSTABLE && !setting->watch.over ? MSR_OK : status;
+  status = run(&c, limits, measured, err);
+  msri_trial_close(setting, &c.trial);
+  return status;
 }
 
 /* ---- Times */
@@ -138,7 +169,7 @@ msr_status msri_measure_time(msri_setting *setting, const msri_reference *refere
     spent += trial.seconds;
   }
   if (status == MSR_OK || (setting->watch.over && isfinite(least))) *seconds = least;
-  msri_trial_close(&start);
-  msri_trial_close(&trial);
+  msri_trial_close(setting, &start);
+  msri_trial_close(setting, &trial);
   return status;
 }

@@ -14,13 +14,24 @@ typedef struct msri_screens {
 msr_status msri_screens_open(const msri_setting *setting, msri_screens *screens, msr_error *err);
 void msri_screens_close(msri_screens *screens);
 
-/* Runs up to the reference's horizon and fills all of the point but its order and front; `seconds`
- * is what the steps of this one run took.
- * `screens` NULL: no pixels. Ends early, unstable, at an error beyond `most`. MSR_OK with a point
- * that isn't stable; a status while watch.over: it was stopped. */
+/* Where a run may be ended. */
+typedef struct msri_limits {
+  double error;         /* largest error that is still of interest [px] */
+  uint64_t evaluations; /* the same */
+} msri_limits;
+
+typedef struct msri_measured {
+  msr_accuracy_point point; /* order and front aside; seconds are what this one run took */
+  double share;             /* of the time up to the horizon that was run */
+  double error;             /* largest in that time, also if the run was ended */
+  double early;             /* in the first quarter of the time up to the horizon */
+} msri_measured;
+
+/* Runs up to the reference's horizon. `screens` NULL: no pixels. MSR_OK, with a point that isn't
+ * stable, if the guard or the limits ended it; any status while watch.over: it was stopped. */
 msr_status msri_measure(msri_setting *setting, const msri_reference *reference,
-                        const msri_screens *screens, const msr_plan_options *options, double most,
-                        msr_accuracy_point *point, msr_error *err);
+                        const msri_screens *screens, const msr_plan_options *options,
+                        const msri_limits *limits, msri_measured *measured, msr_error *err);
 
 /* The least processor time of several runs up to the horizon, which together take about `total`
  * [s] if `once`, the time of one, is short. */

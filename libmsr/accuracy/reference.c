@@ -12,7 +12,7 @@
 /* Methods that have nothing in common but the scene. */
 static const struct pair {
   const msr_integrator *truth, *witness;
-} pairs[] = {{&msr_integrator_rk4, &msr_integrator_verlet}};
+} pairs[] = {{&msr_integrator_kahan_li_8, &msr_integrator_rk4}};
 
 static const double coarsest_atol = 1e-8, atol_ratio = 100;
 enum { MOST_LEVELS = 12 };
@@ -29,7 +29,7 @@ typedef struct duel {
 static msr_status level_options(const msri_setting *setting, const msr_integrator *integrator,
                                 int level, msr_plan_options *options, msr_error *err) {
   uint64_t substeps;
-  const msr_status status = msri_setting_stable(setting, integrator, &substeps, err);
+  const msr_status status = msri_setting_fewest(setting, integrator, false, &substeps, err);
   if (status != MSR_OK) return status;
   if (substeps == 0)
     return msri_fail(err, MSR_EUNSTABLE, "%s has no stable step here", integrator->name);
@@ -112,8 +112,8 @@ static msr_status try_level(duel *d, const struct pair *pair, int level, msr_err
   msri_watch_next(&d->setting->watch, d->goal->share, "reference: %s and %s, level %d",
                   pair->truth->name, pair->witness->name, level + 1);
   if (status == MSR_OK) status = fight(d, err);
-  msri_trial_close(&d->truth);
-  msri_trial_close(&d->witness);
+  msri_trial_close(d->setting, &d->truth);
+  msri_trial_close(d->setting, &d->witness);
   return status;
 }
 

@@ -139,30 +139,37 @@ msr_plan_options msri_setting_options(const msri_setting *setting, const msr_int
   };
 }
 
-msr_status msri_setting_stable(const msri_setting *setting, const msr_integrator *integrator,
-                               uint64_t *substeps, msr_error *err) {
+msr_status msri_setting_fewest(const msri_setting *setting, const msr_integrator *integrator,
+                               bool safe, uint64_t *substeps, msr_error *err) {
   const msr_plan_options one = {.integrator = integrator, .substeps = 1};
   static const double most = 1e9;
   msr_plan *plan;
   const msr_status status = msr_plan_create(setting->scene, &one, &plan, err);
   if (status != MSR_OK) return status;
   const msr_plan_figures f = msr_plan_describe(plan);
-  const double needed = ceil(f.dt / f.stable_step * (1 - 1e-12));
-  *substeps = needed <= 1 ? 1 : needed < most ? (uint64_t)needed : 0;
+  const double needed = ceil(f.dt / (safe ? f.safe_step : f.stable_step) * (1 - 1e-12));
+  *substeps = needed <= 1 || f.stable_step == 0 ? 1 : needed < most ? (uint64_t)needed : 0;
   msr_plan_free(plan);
   return MSR_OK;
 }
 
-msr_status msri_trial_open(const msri_setting *setting, const msr_plan_options *options,
+int msri_setting_order(const msri_setting *setting, const msr_integrator *integrator) {
+  const bool damped = setting->damped && integrator->damped_order > 0;
+  const int order = damped ? integrator->damped_order : integrator->order;
+  return order > 1 ? order : 1;
+}
+
+msr_status msri_trial_open(msri_setting *setting, const msr_plan_options *options,
                            msri_trial *trial, msr_error *err) {
   *trial = (msri_trial){0};
   msr_status status = msr_plan_create(setting->scene, options, &trial->plan, err);
   if (status == MSR_OK) status = msr_state_create(trial->plan, &trial->state, err);
-  if (status != MSR_OK) msri_trial_close(trial);
+  if (status != MSR_OK) msri_trial_close(setting, trial);
   return status;
 }
 
-void msri_trial_close(msri_trial *trial) {
+void msri_trial_close(msri_setting *setting, msri_trial *trial) {
+  if (trial->state) setting->evaluations += trial->state->evaluations;
   msr_state_free(trial->state);
   msr_plan_free(trial->plan);
   *trial = (msri_trial){0};

@@ -10,12 +10,13 @@ typedef struct msri_setting {
   msri_watch watch;
   msr_plan *plan; /* of no run: for figures, and to draw the reference */
   size_t masses;
-  double until;        /* asked for [s] */
-  double far;          /* an error as large as the picture, or as what it holds [px] */
-  bool contacts;       /* something may be in the way */
-  bool damped;         /* a force depends on velocity */
-  size_t n;            /* instants */
-  uint64_t *iteration; /* [n] rising, from 1 on: the last one is the end of what is asked for */
+  double until;         /* asked for [s] */
+  double far;           /* an error as large as the picture, or as what it holds [px] */
+  bool contacts;        /* something may be in the way */
+  bool damped;          /* a force depends on velocity */
+  size_t n;             /* instants */
+  uint64_t evaluations; /* of all runs so far */
+  uint64_t *iteration;  /* [n] rising, from 1 on: the last one is the end of what is asked for */
 } msri_setting;
 
 /* `budget`: the default. MSR_EUSAGE, MSR_EINPUT, MSR_ENOMEM, and as msr_plan_create. */
@@ -31,10 +32,13 @@ msr_plan_options msri_setting_options(const msri_setting *setting, const msr_int
 /* The scene's time at an instant [s]. */
 double msri_setting_time(const msri_setting *setting, size_t instant);
 
-/* The largest step at which the method is stable at any stretch, as substeps, at least 1; 0: there
- * is none. As msr_plan_create. */
-msr_status msri_setting_stable(const msri_setting *setting, const msr_integrator *integrator,
-                               uint64_t *substeps, msr_error *err);
+/* The fewest substeps that are stable at any stretch or, `safe`, ever so long; 0: too many. As
+ * msr_plan_create. */
+msr_status msri_setting_fewest(const msri_setting *setting, const msr_integrator *integrator,
+                               bool safe, uint64_t *substeps, msr_error *err);
+
+/* Order of a method here. */
+int msri_setting_order(const msri_setting *setting, const msr_integrator *integrator);
 
 /* Hash of all that the scene holds: masses, springs, forces, supports, times. */
 uint64_t msri_scene_hash(const msr_scene *scene);
@@ -47,9 +51,9 @@ typedef struct msri_trial {
 } msri_trial;
 
 /* MSR_EUSAGE if the method doesn't take the scene; as msr_plan_create, msr_state_create. */
-msr_status msri_trial_open(const msri_setting *setting, const msr_plan_options *options,
+msr_status msri_trial_open(msri_setting *setting, const msr_plan_options *options,
                            msri_trial *trial, msr_error *err);
-void msri_trial_close(msri_trial *trial);
+void msri_trial_close(msri_setting *setting, msri_trial *trial);
 
 /* Steps up to an iteration. MSR_EUNSTABLE if the guard says so, then too; any status if
  * setting->watch.over is true. */

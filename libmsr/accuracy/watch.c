@@ -38,6 +38,8 @@ void msri_watch_next(msri_watch *watch, double share, const char *format, ...) {
   msri_vformat(watch->text, sizeof watch->text, format, arguments);
   va_end(arguments);
   watch->share = share;
+  watch->most = UINT64_MAX;
+  watch->costly = false;
   watch->over = watch->status != MSR_OK;
   watch->left = watch->stride = 1;
   watch->looked = msri_watch_elapsed(watch);
@@ -55,8 +57,9 @@ msr_status msri_watch_look(msri_watch *watch) {
 }
 
 static msr_status poll(void *data, const msr_state *state) {
-  (void)state;
   msri_watch *watch = data;
+  watch->costly = state->evaluations > watch->most;
+  if (watch->costly) return MSR_EINTR;
   if (--watch->left > 0) return MSR_OK;
   const double now = msri_watch_elapsed(watch), since = now - watch->looked;
   if (since < period / 2)
