@@ -12,7 +12,7 @@
 /* What is aimed at is a little less than what is wanted. */
 static const double margin = 0.7;
 
-/* Fewer evaluations by so much are worth another run. */
+/* A cost smaller by so much is worth another run. */
 static const double worth = 0.8;
 
 enum { MOST_TRIES = 12 };
@@ -34,7 +34,7 @@ msr_status msri_aim_begin(const msri_setting *setting, const msr_integrator *int
       .coarsest = coarsest,
       .r = first,
       .done = substeps == 0,
-      .evaluations = msri_ladder_evaluations(setting, integrator, iterations, substeps),
+      .cost = msri_ladder_cost(setting, integrator, iterations, substeps),
   };
   return MSR_OK;
 }
@@ -91,8 +91,7 @@ void msri_aim_next(msri_aim *aim, const msri_measured *m, double wanted) {
   const double r = bracket(aim, foretell(aim, error, wanted));
   aim->tries++;
   aim->done = !worthwhile(aim, r);
-  aim->evaluations =
-      (double)m->point.evaluations / msri_max(m->share, 1e-9) * pow(r / aim->r, aim->growth);
+  aim->cost = m->cost / msri_max(m->share, 1e-9) * pow(r / aim->r, aim->growth);
   aim->last_r = aim->r;
   aim->last_error = error;
   aim->r = r;

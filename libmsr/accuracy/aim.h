@@ -8,19 +8,19 @@
 typedef struct msri_aim {
   const msr_integrator *integrator;
   double order;          /* error ~ r^-order */
-  double growth;         /* evaluations ~ r^growth */
+  double growth;         /* cost ~ r^growth */
   double coarsest;       /* r is never below */
   double r;              /* of the next run */
-  double evaluations;    /* that it may take */
+  double cost;           /* that it may have */
   double failed, passed; /* the finest run that wasn't accurate, the coarsest that was; 0: none */
   double last_r, last_error; /* of the run before; 0: none */
   int tries;
   bool done;
 } msri_aim;
 
-/* The first run, up to `iterations`, is as coarse as is stable at any stretch. If others are coarser
- * it's for them to show that they are stable; `careful`: none is coarser than is safe for ever so
- * long. As msr_plan_create. */
+/* The first run, up to `iterations`, is as coarse as is stable at any stretch. If others are
+ * coarser it's for them to show that they are stable; `careful`: none is coarser than is safe for
+ * ever so long. As msr_plan_create. */
 msr_status msri_aim_begin(const msri_setting *setting, const msr_integrator *integrator,
                           uint64_t iterations, bool careful, double wanted, msri_aim *aim,
                           msr_error *err);

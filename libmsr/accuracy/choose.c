@@ -8,7 +8,7 @@
  * they did: e ~ t^g with g as measured, but at least 1 for symplectic methods and 2 for others, and
  * twice that to be safe; with supports nothing is promised beyond what was tried.
  *
- * Work is counted in evaluations, and planned by the time that they take on a common machine, so
+ * Costs are counted in evaluations, and planned by the time that they take on a common machine, so
  * that the choice is the same again. */
 #include "accuracy/aim.h"
 #include "accuracy/ladder.h"
@@ -28,11 +28,10 @@ static const double in_question = 4;       /* work of a method that may yet be t
 typedef struct choosing {
   msri_setting setting;
   msri_reference reference;
-  size_t all;    /* instants of the whole; setting.n are those of the stage under way */
-  double error;  /* asked for */
-  double wanted; /* of a run, in the stage under way */
-  msri_aim *aim; /* [n] */
-  size_t n;
+  size_t all;         /* instants of the whole; setting.n are those of the stage under way */
+  double error;       /* asked for */
+  double wanted;      /* of a run, in the stage under way */
+  msri_aim *aim;      /* [setting.n_methods] */
   msri_measured best; /* integrator NULL: none yet */
 } choosing;
 
@@ -46,37 +45,27 @@ typedef struct finding {
 
 /* ---- Methods */
 
-static bool eligible(const msr_integrator *integrator) {
-  return integrator->adaptive || integrator->stability > 0;
-}
-
-static msr_status begin_aims(choosing *c, const msr_accuracy_options *options, msr_error *err) {
-  const bool given = options->n_integrators > 0;
-  const msr_integrator *const *list = given ? options->integrators : msr_integrators;
+static msr_status begin_aims(choosing *c, msr_error *err) {
   const uint64_t iterations = c->setting.iteration[c->reference.n - 1];
   const bool careful = c->reference.n < c->all;
-  size_t n = options->n_integrators;
-  while (!given && list[n]) n++;
+  const size_t n = c->setting.n_methods;
+  msr_status status = MSR_OK;
   c->aim = msri_alloc(n, sizeof *c->aim, "the methods", err);
   if (!c->aim) return MSR_ENOMEM;
-  for (size_t i = 0; i < n; i++) {
-    if (!eligible(list[i])) continue;
-    const msr_status status =
-        msri_aim_begin(&c->setting, list[i], iterations, careful, c->wanted, &c->aim[c->n], err);
-    if (status != MSR_OK) return status;
-    c->n++;
-  }
-  return MSR_OK;
+  for (size_t i = 0; i < n && status == MSR_OK; i++)
+    status = msri_aim_begin(&c->setting, c->setting.method[i], iterations, careful, c->wanted,
+                            &c->aim[i], err);
+  return status;
 }
 
 /* The aim whose next run is the shortest, if it is shorter than the best. */
 static msri_aim *shortest(choosing *c) {
   msri_aim *least = NULL;
-  double most = c->best.point.integrator ? (double)c->best.point.evaluations : HUGE_VAL;
-  for (size_t i = 0; i < c->n; i++) {
-    if (c->aim[i].done || !(c->aim[i].evaluations < most)) continue;
+  double most = c->best.point.integrator ? c->best.cost : HUGE_VAL;
+  for (size_t i = 0; i < c->setting.n_methods; i++) {
+    if (c->aim[i].done || !(c->aim[i].cost < most)) continue;
     least = &c->aim[i];
-    most = least->evaluations;
+    most = least->cost;
   }
   return least;
 }
@@ -84,7 +73,7 @@ static msri_aim *shortest(choosing *c) {
 static msr_status try(choosing *c, msri_aim *aim, msr_error *err) {
   const bool any = c->best.point.integrator != NULL;
   const msri_limits limits = {msri_min(100 * c->error, c->setting.far),
-                              any ? c->best.point.evaluations : UINT64_MAX};
+                              any ? c->best.cost : HUGE_VAL};
   const msr_plan_options options = msri_aim_options(&c->setting, aim);
   msri_measured m;
   msri_watch_next(&c->setting.watch, 1, "choosing: %s", aim->integrator->name);
@@ -94,7 +83,7 @@ static msr_status try(choosing *c, msri_aim *aim, msr_error *err) {
   aim->done = status == MSR_EUSAGE;
   if (status != MSR_OK) return aim->done ? MSR_OK : status;
   const bool good = m.point.stable && m.point.max <= c->wanted;
-  if (good && (!any || m.point.evaluations < c->best.point.evaluations)) c->best = m;
+  if (good && (!any || m.cost < c->best.cost)) c->best = m;
   msri_aim_next(aim, &m, c->wanted);
   return MSR_OK;
 }
@@ -110,10 +99,10 @@ static msr_status try_all(choosing *c, msr_error *err) {
 
 /* ---- Stages */
 
-static double nominal_seconds(const choosing *c, double evaluations) {
+static double nominal_seconds(const choosing *c, double cost) {
   const msr_plan_figures f = msr_plan_describe(c->setting.plan);
   const double small = 20;
-  return evaluations * nominal * ((double)f.masses + (double)f.springs + small);
+  return cost * nominal * ((double)f.masses + (double)f.springs + small);
 }
 
 /* Time of an instant over that of the whole run. */
@@ -129,8 +118,7 @@ static size_t instants_within(const choosing *c, double share) {
 }
 
 /* One stage, up to setting.n and with an error that shall be at most `error` there. */
-static msr_status stage(choosing *c, double error, const msr_accuracy_options *options,
-                        finding *found, msr_error *err) {
+static msr_status stage(choosing *c, double error, finding *found, msr_error *err) {
   const double own = own_share * error;
   const msri_reference_goal goal = {own, own, reference_share};
   msri_reference_clear(&c->reference);
@@ -138,7 +126,7 @@ static msr_status stage(choosing *c, double error, const msr_accuracy_options *o
   if (status != MSR_OK) return status;
   c->wanted = error - msri_reference_error(&c->reference);
   c->best = (msri_measured){0};
-  if (!c->aim) status = begin_aims(c, options, err);
+  if (!c->aim) status = begin_aims(c, err);
   if (status == MSR_OK) status = try_all(c, err);
   if (status != MSR_OK || !c->best.point.integrator) return status;
   *found = (finding){c->best, c->reference.n, msri_reference_error(&c->reference),
@@ -148,18 +136,18 @@ static msr_status stage(choosing *c, double error, const msr_accuracy_options *o
 
 /* Methods whose work isn't far above the best's go on, for a run `times` as long. */
 static void go_on(choosing *c, double times) {
-  const double best = (double)c->best.point.evaluations;
-  for (size_t i = 0; i < c->n; i++) {
+  const double best = c->best.cost;
+  for (size_t i = 0; i < c->setting.n_methods; i++) {
     msri_aim *a = &c->aim[i];
     const double r = a->passed > 0 ? a->passed : a->r;
-    const double work = a->evaluations * pow(r / a->r, a->growth);
+    const double cost = a->cost * pow(r / a->r, a->growth);
     *a = (msri_aim){.integrator = a->integrator,
                     .order = a->order,
                     .growth = a->growth,
                     .coarsest = a->coarsest,
                     .r = r,
-                    .evaluations = times * work,
-                    .done = !(work <= in_question * best)};
+                    .cost = times * cost,
+                    .done = !(cost <= in_question * best)};
   }
 }
 
@@ -174,10 +162,9 @@ static double growth_of(const finding *f) {
 /* How far the whole run is beyond the first stage, and how far the second can go. */
 static size_t second_length(const choosing *c, const finding *f) {
   const double budget = 0.8 * c->setting.watch.budget;
-  const double spent = nominal_seconds(c, (double)c->setting.evaluations);
-  const double work =
-      (double)c->reference.work.evaluations + in_question * (double)f->best.point.evaluations;
-  const double share = (budget - spent) / nominal_seconds(c, work) * share_at(c, f->n);
+  const double spent = nominal_seconds(c, c->setting.cost);
+  const double cost = c->reference.cost + in_question * f->best.cost;
+  const double share = (budget - spent) / nominal_seconds(c, cost) * share_at(c, f->n);
   return share > 0 ? instants_within(c, share) : 1;
 }
 
@@ -188,10 +175,9 @@ static double first_share(const choosing *c) {
   return share >= 0.5 ? 1 : share;
 }
 
-static msr_status choose(choosing *c, const msr_accuracy_options *options, finding *found,
-                         msr_error *err) {
+static msr_status choose(choosing *c, finding *found, msr_error *err) {
   c->setting.n = instants_within(c, first_share(c));
-  msr_status status = stage(c, c->error * pow(share_at(c, c->setting.n), 1.5), options, found, err);
+  msr_status status = stage(c, c->error * pow(share_at(c, c->setting.n), 1.5), found, err);
   if (status != MSR_OK || found->n == 0 || found->parted || found->n == c->all) return status;
   const size_t n = second_length(c, found);
   if (share_at(c, n) < 2 * share_at(c, found->n) || c->setting.watch.over) return status;
@@ -199,7 +185,7 @@ static msr_status choose(choosing *c, const msr_accuracy_options *options, findi
   c->setting.n = n;
   const double left = pow(share_at(c, n), growth_of(found)) / (n < c->all ? 2 : 1);
   msr_error said;
-  status = stage(c, c->error * left, options, found, &said);
+  status = stage(c, c->error * left, found, &said);
   return c->setting.watch.over ? MSR_OK : status;
 }
 
@@ -270,7 +256,7 @@ msr_status msr_accuracy_choose(const msr_scene *scene, double error,
   msr_status status = msri_setting_open(&c.setting, scene, options, default_budget, err);
   if (status != MSR_OK) return status;
   c.all = c.setting.n;
-  status = choose(&c, options, &found, err);
+  status = choose(&c, &found, err);
   if (c.setting.watch.status != MSR_OK)
     status = msri_fail(err, c.setting.watch.status, "stopped before the choice was made");
   if (status == MSR_OK) status = conclude(&c, &found, choice, err);

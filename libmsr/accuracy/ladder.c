@@ -18,8 +18,8 @@ msr_plan_options msri_ladder_tolerance(const msri_setting *setting,
 }
 
 /* An adaptive method takes steps of about Verlet's, some ten evaluations each. */
-double msri_ladder_evaluations(const msri_setting *setting, const msr_integrator *integrator,
-                               uint64_t iterations, uint64_t substeps) {
+double msri_ladder_cost(const msri_setting *setting, const msr_integrator *integrator,
+                        uint64_t iterations, uint64_t substeps) {
   static const double unknown = 10;
   const msr_plan_figures verlet = msr_plan_describe(setting->plan);
   const double n = (double)iterations;
@@ -37,35 +37,33 @@ msr_status msri_ladder_begin(const msri_setting *setting, const msr_integrator *
   ladder->options = integrator->adaptive
                         ? msri_ladder_tolerance(setting, integrator, MSRI_COARSEST_ATOL)
                         : msri_setting_options(setting, integrator, ladder->stable, 0);
-  ladder->evaluations = msri_ladder_evaluations(setting, integrator, iterations, ladder->stable);
+  ladder->cost = msri_ladder_cost(setting, integrator, iterations, ladder->stable);
   return MSR_OK;
 }
 
-static void next_tolerance(const msri_setting *setting, msri_ladder *ladder,
-                           const msr_accuracy_point *measured) {
+static void next_tolerance(const msri_setting *setting, msri_ladder *ladder, double cost) {
   const double atol = ladder->options.atol / atol_ratio;
   ladder->done = atol < MSRI_FINEST_ATOL;
   ladder->options = msri_ladder_tolerance(setting, ladder->integrator, atol);
-  ladder->evaluations = 1.5 * (double)measured->evaluations;
+  ladder->cost = 1.5 * cost;
 }
 
-static void next_step(msri_ladder *ladder, const msr_accuracy_point *measured) {
+static void next_step(msri_ladder *ladder, double cost, bool stable) {
   const double previous = (double)ladder->options.substeps;
   uint64_t substeps = (uint64_t)(previous / sqrt(2));
-  ladder->coarser = ladder->coarser && measured->stable && substeps > 0;
+  ladder->coarser = ladder->coarser && stable && substeps > 0;
   if (!ladder->coarser) {
     const bool turning = ladder->options.substeps <= ladder->stable;
     substeps = 2 * (turning ? ladder->stable : ladder->options.substeps);
   }
   ladder->done = (double)substeps > MSRI_MOST_SUBSTEPS;
   ladder->options.substeps = substeps;
-  ladder->evaluations = (double)measured->evaluations * (double)substeps / previous;
+  ladder->cost = cost * (double)substeps / previous;
 }
 
-void msri_ladder_next(const msri_setting *setting, msri_ladder *ladder,
-                      const msr_accuracy_point *measured) {
+void msri_ladder_next(const msri_setting *setting, msri_ladder *ladder, double cost, bool stable) {
   if (ladder->integrator->adaptive)
-    next_tolerance(setting, ladder, measured);
+    next_tolerance(setting, ladder, cost);
   else
-    next_step(ladder, measured);
+    next_step(ladder, cost, stable);
 }

@@ -9,9 +9,9 @@
 #define MSRI_FINEST_ATOL   0.5e-13
 #define MSRI_MOST_SUBSTEPS 1e9
 
-/* Evaluations that a run may take, where none was made. */
-double msri_ladder_evaluations(const msri_setting *setting, const msr_integrator *integrator,
-                               uint64_t iterations, uint64_t substeps);
+/* What a run may cost, where none was made. */
+double msri_ladder_cost(const msri_setting *setting, const msr_integrator *integrator,
+                        uint64_t iterations, uint64_t substeps);
 
 /* Options of an adaptive run. */
 msr_plan_options msri_ladder_tolerance(const msri_setting *setting,
@@ -23,15 +23,14 @@ typedef struct msri_ladder {
   bool coarser;    /* still going to larger steps than that */
   bool done;
   msr_plan_options options; /* of the next run */
-  double evaluations;       /* that the next run may take */
+  double cost;              /* that the next run may have */
 } msri_ladder;
 
 /* `iterations`: of a run. As msr_plan_create. */
 msr_status msri_ladder_begin(const msri_setting *setting, const msr_integrator *integrator,
                              uint64_t iterations, msri_ladder *ladder, msr_error *err);
 
-/* What follows the run that was measured. */
-void msri_ladder_next(const msri_setting *setting, msri_ladder *ladder,
-                      const msr_accuracy_point *measured);
+/* What follows a run that had this cost. */
+void msri_ladder_next(const msri_setting *setting, msri_ladder *ladder, double cost, bool stable);
 
 #endif

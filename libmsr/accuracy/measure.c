@@ -117,13 +117,14 @@ static void fill(const course *c, msr_accuracy_point *point) {
 static msr_status run(course *c, const msri_limits *limits, msri_measured *measured,
                       msr_error *err) {
   msri_watch *watch = &c->setting->watch;
-  watch->most = limits->evaluations;
+  watch->most = limits->cost;
   const msr_status status = follow(c, limits->error, err);
   const msr_work work = msr_state_work(c->trial.state);
   msr_accuracy_point *point = &measured->point;
   point->steps = work.steps;
   point->evaluations = work.evaluations;
   if (status == MSR_OK) fill(c, point);
+  measured->cost = msri_trial_cost(c->trial.state);
   measured->error = c->max;
   measured->early = c->early;
   measured->share = (double)c->trial.state->iteration / (double)end_of(c);
@@ -145,31 +146,52 @@ msr_status msri_measure(msri_setting *setting, const msri_reference *reference,
 
 /* ---- Times */
 
-/* Enough of them: `spent` [s] in `runs`, which should be `total`, and 3 unless they are long. */
-static bool enough(int runs, double spent, double total) {
-  const double longest = 2.5 * total;
-  return runs > 0 && (spent > longest || (runs >= 3 && spent > total));
+/* Times of runs [s]: the two least, and all together. */
+typedef struct times {
+  int runs;
+  double least, second, spent;
+} times;
+
+static void add(times *t, double seconds) {
+  t->runs++;
+  t->spent += seconds;
+  t->second = msri_min(t->second, msri_max(t->least, seconds));
+  t->least = msri_min(t->least, seconds);
+}
+
+/* One run if it is long; else three at least, until two agree on the least, or time is up. */
+static bool enough(const times *t, double total) {
+  const double longest = 2.5 * total, shortest = total / 20, alike = 1.01;
+  if (t->runs == 0 || t->spent > longest) return t->runs > 0;
+  if (t->runs < 3 || t->spent < shortest) return false;
+  return t->second < alike * t->least || t->spent > total;
+}
+
+static msr_status repeat(msri_setting *setting, msri_trial *trial, const msr_state *start,
+                         uint64_t end, double total, times *t, msr_error *err) {
+  msr_status status = MSR_OK;
+  while (status == MSR_OK && !enough(t, total)) {
+    msr_state_copy(trial->state, start);
+    trial->seconds = 0;
+    status = msri_trial_step(setting, trial, end, err);
+    if (status == MSR_OK) add(t, trial->seconds);
+  }
+  return status;
 }
 
 msr_status msri_measure_time(msri_setting *setting, const msri_reference *reference,
                              const msr_plan_options *options, double total, double *seconds,
                              msr_error *err) {
   const uint64_t end = setting->iteration[reference->n - 1];
-  msri_trial start, trial;
+  times t = {.least = (double)INFINITY, .second = (double)INFINITY};
+  msr_state *start = NULL;
+  msri_trial trial;
   msr_status status = msri_trial_open(setting, options, &trial, err);
   if (status != MSR_OK) return status;
-  start = (msri_trial){0};
-  status = msr_state_create(trial.plan, &start.state, err);
-  double least = (double)INFINITY, spent = 0;
-  for (int runs = 0; status == MSR_OK && !enough(runs, spent, total); runs++) {
-    msr_state_copy(trial.state, start.state);
-    trial.seconds = 0;
-    status = msri_trial_step(setting, &trial, end, err);
-    least = msri_min(least, trial.seconds);
-    spent += trial.seconds;
-  }
-  if (status == MSR_OK || (setting->watch.over && isfinite(least))) *seconds = least;
-  msri_trial_close(setting, &start);
+  status = msr_state_create(trial.plan, &start, err);
+  if (status == MSR_OK) status = repeat(setting, &trial, start, end, total, &t, err);
+  if (t.runs > 0) *seconds = t.least;
+  msr_state_free(start);
   msri_trial_close(setting, &trial);
   return status;
 }

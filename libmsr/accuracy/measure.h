@@ -16,15 +16,16 @@ void msri_screens_close(msri_screens *screens);
 
 /* Where a run may be ended. */
 typedef struct msri_limits {
-  double error;         /* largest error that is still of interest [px] */
-  uint64_t evaluations; /* the same */
+  double error; /* largest that is still of interest [px] */
+  double cost;  /* the same */
 } msri_limits;
 
 typedef struct msri_measured {
   msr_accuracy_point point; /* order and front aside; seconds are what this one run took */
-  double share;             /* of the time up to the horizon that was run */
-  double error;             /* largest in that time, also if the run was ended */
-  double early;             /* in the first quarter of the time up to the horizon */
+  double cost;
+  double share; /* of the time up to the horizon that was run */
+  double error; /* largest in that time, also if the run was ended */
+  double early; /* in the first quarter of the time up to the horizon */
 } msri_measured;
 
 /* Runs up to the reference's horizon. `screens` NULL: no pixels. MSR_OK, with a point that isn't
@@ -33,8 +34,9 @@ msr_status msri_measure(msri_setting *setting, const msri_reference *reference,
                         const msri_screens *screens, const msr_plan_options *options,
                         const msri_limits *limits, msri_measured *measured, msr_error *err);
 
-/* The least processor time of several runs up to the horizon, which together take about `total`
- * [s] if `once`, the time of one, is short. */
+/* The least processor time of several runs up to the horizon that do nothing else [s], with about
+ * `total` [s] for all of them; unchanged if none came to its end. After msri_measure, which warms
+ * the machine up. */
 msr_status msri_measure_time(msri_setting *setting, const msri_reference *reference,
                              const msr_plan_options *options, double total, double *seconds,
                              msr_error *err);

@@ -78,9 +78,7 @@ static msr_status fight(duel *d, msr_error *err) {
     if (status == MSR_OK && !record(d)) break;
   }
   const bool ended = status == MSR_EUNSTABLE || d->setting->watch.over;
-  const msr_work a = msr_state_work(d->truth.state), b = msr_state_work(d->witness.state);
-  d->made->work = (msr_work){a.steps + b.steps, a.evaluations + b.evaluations};
-  d->made->seconds = d->truth.seconds + d->witness.seconds;
+  d->made->cost = msri_trial_cost(d->truth.state) + msri_trial_cost(d->witness.state);
   return ended ? MSR_OK : status;
 }
 

@@ -3,7 +3,7 @@
 #ifndef MSRI_REFERENCE_H
 #define MSRI_REFERENCE_H
 
-#include "accuracy/setting.h"
+#include "accuracy/trial.h"
 
 typedef struct msri_reference {
   size_t n;       /* instants up to the horizon */
@@ -11,8 +11,7 @@ typedef struct msri_reference {
   double *energy; /* [n] total */
   double *gap;    /* [n] largest difference of the two so far [px] */
   msr_plan_options truth, witness;
-  msr_work work;  /* of both up to the horizon */
-  double seconds; /* processor time, the same */
+  double cost; /* of both up to the horizon */
 } msri_reference;
 
 /* How good it should be. */

@@ -64,6 +64,31 @@ static msr_status check(const msr_accuracy_options *o, msr_error *err) {
   return MSR_OK;
 }
 
+/* ---- Methods */
+
+static bool has(const msri_setting *s, const msr_integrator *integrator) {
+  for (size_t i = 0; i < s->n_methods; i++)
+    if (s->method[i] == integrator) return true;
+  return false;
+}
+
+/* Those asked for, or all of the library that are stable at some step. */
+static msr_status list_methods(msri_setting *s, const msr_accuracy_options *o, msr_error *err) {
+  const bool all = o->n_integrators == 0;
+  const msr_integrator *const *list = all ? msr_integrators : o->integrators;
+  size_t n = o->n_integrators;
+  while (all && list[n]) n++;
+  s->method = msri_alloc(n, sizeof *s->method, "the methods", err);
+  if (!s->method) return MSR_ENOMEM;
+  for (size_t i = 0; i < n; i++) {
+    const bool never = all && !list[i]->adaptive && !(list[i]->stability > 0);
+    if (!never && !has(s, list[i])) s->method[s->n_methods++] = list[i];
+  }
+  return MSR_OK;
+}
+
+/* ---- The scene */
+
 /* The side of the picture or, if larger, of the box that holds all masses. */
 static double extent(const msr_state *state) {
   const msr_plan_figures f = msr_plan_describe(state->plan);
@@ -105,6 +130,7 @@ static msr_status fill(msri_setting *s, const msr_accuracy_options *options, msr
   s->until = all ? whole : options->until;
   msr_status status = msr_plan_create(s->scene, &one, &s->plan, err);
   if (status == MSR_OK) status = look_at_effects(s, err);
+  if (status == MSR_OK) status = list_methods(s, options, err);
   if (status != MSR_OK) return status;
   return choose_instants(s, all ? conf->iterations : (uint64_t)asked, err);
 }
@@ -125,6 +151,7 @@ msr_status msri_setting_open(msri_setting *setting, const msr_scene *scene,
 void msri_setting_close(msri_setting *setting) {
   msr_plan_free(setting->plan);
   free(setting->iteration);
+  free(setting->method);
 }
 
 /* ---- Runs */
@@ -157,29 +184,4 @@ int msri_setting_order(const msri_setting *setting, const msr_integrator *integr
   const bool damped = setting->damped && integrator->damped_order > 0;
   const int order = damped ? integrator->damped_order : integrator->order;
   return order > 1 ? order : 1;
-}
-
-msr_status msri_trial_open(msri_setting *setting, const msr_plan_options *options,
-                           msri_trial *trial, msr_error *err) {
-  *trial = (msri_trial){0};
-  msr_status status = msr_plan_create(setting->scene, options, &trial->plan, err);
-  if (status == MSR_OK) status = msr_state_create(trial->plan, &trial->state, err);
-  if (status != MSR_OK) msri_trial_close(setting, trial);
-  return status;
-}
-
-void msri_trial_close(msri_setting *setting, msri_trial *trial) {
-  if (trial->state) setting->evaluations += trial->state->evaluations;
-  msr_state_free(trial->state);
-  msr_plan_free(trial->plan);
-  *trial = (msri_trial){0};
-}
-
-msr_status msri_trial_step(msri_setting *setting, msri_trial *trial, uint64_t iteration,
-                           msr_error *err) {
-  const msri_poll poll = msri_watch_poll(&setting->watch);
-  const double start = msri_thread_seconds();
-  msr_status status = msri_step(trial->state, iteration - trial->state->iteration, &poll, err);
-  trial->seconds += msri_thread_seconds() - start;
-  return status == MSR_OK ? msr_state_check(trial->state, err) : status;
 }

@@ -10,13 +10,15 @@ typedef struct msri_setting {
   msri_watch watch;
   msr_plan *plan; /* of no run: for figures, and to draw the reference */
   size_t masses;
-  double until;         /* asked for [s] */
-  double far;           /* an error as large as the picture, or as what it holds [px] */
-  bool contacts;        /* something may be in the way */
-  bool damped;          /* a force depends on velocity */
-  size_t n;             /* instants */
-  uint64_t evaluations; /* of all runs so far */
-  uint64_t *iteration;  /* [n] rising, from 1 on: the last one is the end of what is asked for */
+  double until;                  /* asked for [s] */
+  double far;                    /* an error as large as the picture, or as what it holds [px] */
+  const msr_integrator **method; /* [n_methods] asked for, none twice */
+  size_t n_methods;
+  bool contacts;       /* something may be in the way */
+  bool damped;         /* a force depends on velocity */
+  size_t n;            /* instants */
+  double cost;         /* of all runs so far */
+  uint64_t *iteration; /* [n] rising, from 1 on: the last one is the end of what is asked for */
 } msri_setting;
 
 /* `budget`: the default. MSR_EUSAGE, MSR_EINPUT, MSR_ENOMEM, and as msr_plan_create. */
@@ -42,22 +44,5 @@ int msri_setting_order(const msri_setting *setting, const msr_integrator *integr
 
 /* Hash of all that the scene holds: masses, springs, forces, supports, times. */
 uint64_t msri_scene_hash(const msr_scene *scene);
-
-/* A run under way. */
-typedef struct msri_trial {
-  msr_plan *plan;
-  msr_state *state;
-  double seconds; /* processor time spent in steps */
-} msri_trial;
-
-/* MSR_EUSAGE if the method doesn't take the scene; as msr_plan_create, msr_state_create. */
-msr_status msri_trial_open(msri_setting *setting, const msr_plan_options *options,
-                           msri_trial *trial, msr_error *err);
-void msri_trial_close(msri_setting *setting, msri_trial *trial);
-
-/* Steps up to an iteration. MSR_EUNSTABLE if the guard says so, then too; any status if
- * setting->watch.over is true. */
-msr_status msri_trial_step(msri_setting *setting, msri_trial *trial, uint64_t iteration,
-                           msr_error *err);
 
 #endif

@@ -5,6 +5,7 @@
  * near what is asked for, or when it takes a hundred times the work of another that is as good. */
 #include "accuracy/ladder.h"
 #include "accuracy/measure.h"
+#include "accuracy/result.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,72 +15,44 @@ static const double default_finest = 1e-10;                      /* [px] */
 static const double parted = 1e-3;  /* where references differ by so much, they have parted [px] */
 static const double hopeless = 100; /* times the work of a method that is as good */
 
-struct msr_accuracy {
-  msr_accuracy_figures figures;
-  msr_accuracy_point *point;
-  size_t n, capacity;
-};
-
 typedef struct study {
   msri_setting setting;
   msri_reference reference;
   msri_screens screens;
-  msri_ladder *ladder; /* [n] */
-  size_t n;
+  msri_ladder *ladder; /* [setting.n_methods] */
   double finest;
   bool complete;
   msr_accuracy *made;
 } study;
 
-/* ---- Which methods */
+/* ---- Points */
 
-static bool asked_twice(const study *s, const msr_integrator *integrator) {
-  for (size_t i = 0; i < s->n; i++)
-    if (s->ladder[i].integrator == integrator) return true;
-  return false;
-}
-
-static msr_status begin_ladders(study *s, const msr_integrator *const *list, size_t n, bool all,
-                                msr_error *err) {
+static msr_status begin_ladders(study *s, msr_error *err) {
   const uint64_t iterations = s->setting.iteration[s->reference.n - 1];
+  const size_t n = s->setting.n_methods;
+  msr_status status = MSR_OK;
   s->ladder = msri_alloc(n, sizeof *s->ladder, "the methods", err);
   if (!s->ladder) return MSR_ENOMEM;
-  for (size_t i = 0; i < n; i++) {
-    const bool stable = list[i]->adaptive || list[i]->stability > 0;
-    if ((all && !stable) || asked_twice(s, list[i])) continue;
-    const msr_status status =
-        msri_ladder_begin(&s->setting, list[i], iterations, &s->ladder[s->n], err);
-    if (status != MSR_OK) return status;
-    s->n++;
-  }
-  return MSR_OK;
+  for (size_t i = 0; i < n && status == MSR_OK; i++)
+    status = msri_ladder_begin(&s->setting, s->setting.method[i], iterations, &s->ladder[i], err);
+  return status;
 }
-
-static msr_status choose_methods(study *s, const msr_accuracy_options *options, msr_error *err) {
-  if (options->n_integrators > 0)
-    return begin_ladders(s, options->integrators, options->n_integrators, false, err);
-  size_t n = 0;
-  while (msr_integrators[n]) n++;
-  return begin_ladders(s, msr_integrators, n, true, err);
-}
-
-/* ---- Points */
 
 /* The method whose next run is the shortest; NULL: all are done. */
 static msri_ladder *shortest(study *s) {
   msri_ladder *least = NULL;
-  for (size_t i = 0; i < s->n; i++) {
+  for (size_t i = 0; i < s->setting.n_methods; i++) {
     msri_ladder *l = &s->ladder[i];
-    if (!l->done && (!least || l->evaluations < least->evaluations)) least = l;
+    if (!l->done && (!least || l->cost < least->cost)) least = l;
   }
   return least;
 }
 
-static bool is_hopeless(const study *s, const msr_accuracy_point *point) {
+static bool is_hopeless(const study *s, const msri_measured *m) {
   for (size_t i = 0; i < s->made->n; i++) {
     const msr_accuracy_point *p = &s->made->point[i];
-    if (p->max <= point->max && hopeless * (double)p->evaluations < (double)point->evaluations)
-      return true;
+    const msr_work work = {p->steps, p->evaluations};
+    if (p->max <= m->point.max && hopeless * msri_cost(p->integrator, &work) < m->cost) return true;
   }
   return false;
 }
@@ -89,25 +62,14 @@ static bool time_for(const study *s, double spent, double times) {
   return msri_watch_elapsed(&s->setting.watch) + times * spent < s->setting.watch.budget;
 }
 
-static void go_on(study *s, msri_ladder *ladder, const msr_accuracy_point *point, double spent) {
+static void go_on(study *s, msri_ladder *ladder, const msri_measured *m, double spent) {
   const double target = msri_max(s->finest, 2 * msri_reference_error(&s->reference));
-  const bool coarser = ladder->coarser;
-  msri_ladder_next(&s->setting, ladder, point);
-  ladder->done |= !coarser && point->stable && (point->max <= target || is_hopeless(s, point));
-  if (ladder->done || point->evaluations == 0) return;
-  const double times = ladder->evaluations / (double)point->evaluations;
-  if (time_for(s, spent, times)) return;
+  const bool coarser = ladder->coarser, stable = m->point.stable;
+  msri_ladder_next(&s->setting, ladder, m->cost, stable);
+  ladder->done |= !coarser && stable && (m->point.max <= target || is_hopeless(s, m));
+  if (ladder->done || time_for(s, spent, ladder->cost / m->cost)) return;
   ladder->done = true;
   s->complete = false;
-}
-
-static msr_status keep(msr_accuracy *made, const msr_accuracy_point *point, msr_error *err) {
-  msr_accuracy_point *grown =
-      msri_grow(made->point, &made->capacity, made->n + 1, sizeof *point, "the points", err);
-  if (!grown) return MSR_ENOMEM;
-  made->point = grown;
-  made->point[made->n++] = *point;
-  return MSR_OK;
 }
 
 static void announce(study *s, const msr_plan_options *o) {
@@ -118,19 +80,17 @@ static void announce(study *s, const msr_plan_options *o) {
                     (unsigned long long)o->substeps);
 }
 
-/* Errors, then times, of runs that together take about a six-hundredth of the budget. */
-static msr_status measure(study *s, const msr_plan_options *options, msr_accuracy_point *point,
+/* Its error, then its time, unless it is a run that was made before. */
+static msr_status measure(study *s, const msr_plan_options *options, msri_measured *m,
                           msr_error *err) {
-  const msri_limits limits = {s->setting.far, UINT64_MAX};
-  msri_measured measured;
+  const msri_limits limits = {s->setting.far, HUGE_VAL};
   announce(s, options);
   const msr_status status =
-      msri_measure(&s->setting, &s->reference, &s->screens, options, &limits, &measured, err);
-  *point = measured.point;
-  point->seconds = (double)NAN;
-  if (status != MSR_OK || !point->stable) return status;
+      msri_measure(&s->setting, &s->reference, &s->screens, options, &limits, m, err);
+  m->point.seconds = (double)NAN;
+  if (status != MSR_OK || !m->point.stable || msri_result_has(s->made, &m->point)) return status;
   return msri_measure_time(&s->setting, &s->reference, options, s->setting.watch.budget / 600,
-                           &point->seconds, err);
+                           &m->point.seconds, err);
 }
 
 /* One run of the ladder. A method that doesn't take the scene has no points; nor has a run that is
@@ -138,16 +98,16 @@ static msr_status measure(study *s, const msr_plan_options *options, msr_accurac
 static msr_status climb(study *s, msri_ladder *ladder, msr_error *err) {
   const double start = msri_watch_elapsed(&s->setting.watch);
   const msr_plan_options options = ladder->options;
-  msr_accuracy_point point;
-  msr_status status = measure(s, &options, &point, err);
-  if (s->setting.watch.over) {
-    s->complete = false;
-    return point.seconds >= 0 ? keep(s->made, &point, err) : MSR_OK;
-  }
-  ladder->done = status == MSR_EUSAGE;
-  if (ladder->done) return MSR_OK;
-  if (status == MSR_OK) status = keep(s->made, &point, err);
-  if (status == MSR_OK) go_on(s, ladder, &point, msri_watch_elapsed(&s->setting.watch) - start);
+  msri_measured m;
+  msr_status status = measure(s, &options, &m, err);
+  const bool over = s->setting.watch.over;
+  s->complete &= !over;
+  ladder->done = status == MSR_EUSAGE || over;
+  if (ladder->done) status = MSR_OK;
+  const bool timed = m.point.seconds >= 0, unstable = !ladder->done && !m.point.stable;
+  if (status == MSR_OK && (timed || unstable)) status = msri_result_add(s->made, &m.point, err);
+  if (status == MSR_OK && !ladder->done)
+    go_on(s, ladder, &m, msri_watch_elapsed(&s->setting.watch) - start);
   return status;
 }
 
@@ -158,61 +118,6 @@ static msr_status climb_all(study *s, msr_error *err) {
     if (s->setting.watch.over) return status;
   }
   return status;
-}
-
-/* ---- What the points say */
-
-static size_t place(const study *s, const msr_integrator *integrator) {
-  size_t i = 0;
-  while (s->ladder[i].integrator != integrator) i++;
-  return i;
-}
-
-static bool before(const study *s, const msr_accuracy_point *a, const msr_accuracy_point *b) {
-  const size_t i = place(s, a->integrator), j = place(s, b->integrator);
-  if (i != j) return i < j;
-  return a->integrator->adaptive ? a->atol > b->atol : a->substeps < b->substeps;
-}
-
-static void sort(const study *s) {
-  msr_accuracy_point *p = s->made->point;
-  for (size_t i = 1; i < s->made->n; i++)
-    for (size_t j = i; j > 0 && before(s, &p[j], &p[j - 1]); j--) {
-      const msr_accuracy_point swap = p[j];
-      p[j] = p[j - 1];
-      p[j - 1] = swap;
-    }
-}
-
-/* log of the ratio of errors over that of steps. */
-static void find_orders(msr_accuracy *made) {
-  for (size_t i = 1; i < made->n; i++) {
-    const msr_accuracy_point *a = &made->point[i - 1];
-    msr_accuracy_point *b = &made->point[i];
-    const bool comparable = a->integrator == b->integrator && !b->integrator->adaptive;
-    if (comparable && a->stable && b->stable && a->max > 0 && b->max > 0)
-      b->order = log(a->max / b->max) / log((double)b->substeps / (double)a->substeps);
-  }
-}
-
-/* An error below the reference's own can't be told from it. */
-static double error_of(const msr_accuracy *made, const msr_accuracy_point *p) {
-  return msri_max(p->max, made->figures.reference_error);
-}
-
-static bool beats(const msr_accuracy *made, const msr_accuracy_point *a,
-                  const msr_accuracy_point *b) {
-  if (!a->stable) return false;
-  const double x = error_of(made, a), y = error_of(made, b);
-  return x <= y && a->seconds <= b->seconds && (x < y || a->seconds < b->seconds);
-}
-
-static void find_front(msr_accuracy *made) {
-  for (size_t i = 0; i < made->n; i++) {
-    msr_accuracy_point *p = &made->point[i];
-    p->front = p->stable;
-    for (size_t j = 0; j < made->n && p->front; j++) p->front = !beats(made, &made->point[j], p);
-  }
 }
 
 /* ---- The whole */
@@ -239,18 +144,16 @@ static void describe(study *s) {
   };
 }
 
-static msr_status run(study *s, const msr_accuracy_options *options, msr_error *err) {
+static msr_status run(study *s, msr_error *err) {
   const msri_reference_goal goal = {parted, s->finest / 4, reference_share};
   msr_status status = msri_reference_find(&s->setting, &goal, &s->reference, err);
   if (status == MSR_OK) status = msri_screens_open(&s->setting, &s->screens, err);
-  if (status == MSR_OK) status = choose_methods(s, options, err);
+  if (status == MSR_OK) status = begin_ladders(s, err);
   s->complete = s->setting.watch.status == MSR_OK;
   if (status == MSR_OK && s->complete) status = climb_all(s, err);
   if (status != MSR_OK) return status;
   describe(s);
-  sort(s);
-  find_orders(s->made);
-  find_front(s->made);
+  msri_result_finish(s->made, s->setting.method);
   return MSR_OK;
 }
 
@@ -269,36 +172,11 @@ msr_status msr_accuracy_study(const msr_scene *scene, const msr_accuracy_options
   msr_status status = msri_setting_open(&s.setting, scene, options, default_budget, err);
   if (status != MSR_OK) return status;
   s.made = msri_alloc(1, sizeof *s.made, "a study", err);
-  status = s.made ? run(&s, options, err) : MSR_ENOMEM;
+  status = s.made ? run(&s, err) : MSR_ENOMEM;
   close(&s);
   if (status == MSR_OK)
     *accuracy = s.made;
   else
     msr_accuracy_free(s.made);
   return status;
-}
-
-void msr_accuracy_free(msr_accuracy *accuracy) {
-  if (!accuracy) return;
-  free(accuracy->point);
-  free(accuracy);
-}
-
-msr_accuracy_figures msr_accuracy_describe(const msr_accuracy *accuracy) {
-  return accuracy->figures;
-}
-
-const msr_accuracy_point *msr_accuracy_points(const msr_accuracy *accuracy, size_t *n) {
-  *n = accuracy->n;
-  return accuracy->point;
-}
-
-const msr_accuracy_point *msr_accuracy_cheapest(const msr_accuracy *accuracy, double error) {
-  const msr_accuracy_point *best = NULL;
-  for (size_t i = 0; i < accuracy->n; i++) {
-    const msr_accuracy_point *p = &accuracy->point[i];
-    const bool good = p->stable && p->max + accuracy->figures.reference_error <= error;
-    if (good && (!best || p->seconds < best->seconds)) best = p;
-  }
-  return best;
 }

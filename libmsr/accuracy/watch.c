@@ -5,8 +5,10 @@
  * scene, so that looks are spaced by a number of substeps that adapts to their length. */
 #include "accuracy/watch.h"
 
+#include "accuracy/trial.h"
 #include "base/number.h"
 
+#include <math.h>
 #include <time.h>
 
 static const double period = 0.002; /* between looks [s] */
@@ -38,7 +40,7 @@ void msri_watch_next(msri_watch *watch, double share, const char *format, ...) {
   msri_vformat(watch->text, sizeof watch->text, format, arguments);
   va_end(arguments);
   watch->share = share;
-  watch->most = UINT64_MAX;
+  watch->most = HUGE_VAL;
   watch->costly = false;
   watch->over = watch->status != MSR_OK;
   watch->left = watch->stride = 1;
@@ -58,7 +60,7 @@ msr_status msri_watch_look(msri_watch *watch) {
 
 static msr_status poll(void *data, const msr_state *state) {
   msri_watch *watch = data;
-  watch->costly = state->evaluations > watch->most;
+  watch->costly = watch->most < HUGE_VAL && msri_trial_cost(state) > watch->most;
   if (watch->costly) return MSR_EINTR;
   if (--watch->left > 0) return MSR_OK;
   const double now = msri_watch_elapsed(watch), since = now - watch->looked;

@@ -10,7 +10,7 @@ typedef struct msri_watch {
   double share;          /* of the budget, after which what is under way must end */
   double looked;         /* at the clock, last */
   uint64_t left, stride; /* substeps until the next look, between looks */
-  uint64_t most;         /* evaluations that what is under way may take */
+  double most;           /* cost of what is under way at which it is stopped: msri_cost */
   bool costly;           /* it was stopped because it took more */
   msr_status status;     /* what the caller's poll returned */
   bool over;             /* late, or the caller said so: what is under way has been stopped */
@@ -20,8 +20,8 @@ typedef struct msri_watch {
 /* Starts the clock; a budget of 0 is `budget`. */
 void msri_watch_begin(msri_watch *watch, const msr_accuracy_options *options, double budget);
 
-/* What comes next, for the user, may last until this share of the budget has gone, and take any
- * number of evaluations. */
+/* What comes next, for the user, may last until this share of the budget has gone, at any
+ * cost. */
 void msri_watch_next(msri_watch *watch, double share, const char *format, ...) MSRI_PRINTF(3, 4);
 
 /* Is it over? MSR_EINTR, or what the caller's poll returned. */
