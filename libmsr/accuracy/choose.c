@@ -120,7 +120,7 @@ static size_t instants_within(const choosing *c, double share) {
 /* One stage, up to setting.n and with an error that shall be at most `error` there. */
 static msr_status stage(choosing *c, double error, finding *found, msr_error *err) {
   const double own = own_share * error;
-  const msri_reference_goal goal = {own, own, reference_share};
+  const msri_reference_goal goal = {own, own, 0.25, reference_share};
   msri_reference_clear(&c->reference);
   msr_status status = msri_reference_find(&c->setting, &goal, &c->reference, err);
   if (status != MSR_OK) return status;

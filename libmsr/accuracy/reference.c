@@ -118,11 +118,11 @@ static msr_status try_level(duel *d, const struct pair *pair, int level, msr_err
 /* ---- Refining */
 
 /* Does b reach further than a, or as far with half the error? */
-static bool better(const msri_reference *a, const msri_reference *b) {
+static bool better(const duel *d, const msri_reference *a, const msri_reference *b) {
   if (b->n == 0) return false;
   if (a->n == 0) return true;
   if (b->n < a->n) return false;
-  return b->n > a->n + a->n / 16 || b->gap[a->n - 1] < a->gap[a->n - 1] / 2;
+  return (double)b->n > (1 + d->goal->longer) * (double)a->n || b->gap[a->n - 1] < a->gap[a->n - 1] / 2;
 }
 
 static bool good_enough(const duel *d, const msri_reference *r) {
@@ -142,7 +142,7 @@ static msr_status refine(duel *d, const struct pair *pair, msri_reference *best,
     const double start = msri_watch_elapsed(&d->setting->watch);
     msr_status status = reserve(d->setting, &next, err);
     if (status == MSR_OK) status = try_level(d, pair, level, err);
-    const bool pays = status == MSR_OK && better(best, &next);
+    const bool pays = status == MSR_OK && better(d, best, &next);
     msri_reference worse = pays ? *best : next;
     if (pays) *best = next;
     msri_reference_clear(&worse);

@@ -18,6 +18,7 @@ typedef struct msri_reference {
 typedef struct msri_reference_goal {
   double parted; /* beyond this difference they don't agree [px] */
   double enough; /* a smaller one needn't be refined [px] */
+  double longer; /* share by which it must grow for refining to pay, unless it's more exact */
   double share;  /* of the budget */
 } msri_reference_goal;
 
