@@ -9,12 +9,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Methods that have nothing in common but the scene. */
-static const struct pair {
-  const msr_integrator *truth, *witness;
-} pairs[] = {{&msr_integrator_kahan_li_8, &msr_integrator_rk4}};
+/* Methods that have nothing in common but the scene, and the substeps of the first level over the
+ * fewest that are stable. Where there is something in the way, all methods see to it likewise, so
+ * that the witness must have other steps. */
+typedef struct entrant {
+  const msr_integrator *integrator;
+  double fineness, atol;
+} entrant;
 
-static const double coarsest_atol = 1e-8, atol_ratio = 100;
+typedef struct pair {
+  entrant truth, witness;
+} pair;
+
+static const pair quick = {{&msr_integrator_srkn6, 1, 0}, {&msr_integrator_rk8pd, 1, 1e-3}};
+static const pair smooth = {{&msr_integrator_kahan_li_8, 1, 0}, {&msr_integrator_rk8pd, 1, 1e-6}};
+static const pair impacts = {{&msr_integrator_kahan_li_8, 1, 0}, {&msr_integrator_rk4, 2.9, 0}};
+
+static const double quick_goal = 1e-6; /* below this error a quick look is of no use [px] */
+static const double atol_ratio = 100;  /* from level to level; steps are halved */
 enum { MOST_LEVELS = 12 };
 
 typedef struct duel {
@@ -26,16 +38,17 @@ typedef struct duel {
 
 /* ---- One level of refinement */
 
-static msr_status level_options(const msri_setting *setting, const msr_integrator *integrator,
-                                int level, msr_plan_options *options, msr_error *err) {
-  uint64_t substeps;
-  const msr_status status = msri_setting_fewest(setting, integrator, false, &substeps, err);
+static msr_status level_options(const msri_setting *setting, const entrant *e, int level,
+                                msr_plan_options *options, msr_error *err) {
+  uint64_t fewest;
+  const msr_status status = msri_setting_fewest(setting, e->integrator, false, &fewest, err);
   if (status != MSR_OK) return status;
-  if (substeps == 0)
-    return msri_fail(err, MSR_EUNSTABLE, "%s has no stable step here", integrator->name);
-  const bool fixed = !integrator->adaptive || setting->contacts;
-  const double atol = coarsest_atol * pow(atol_ratio, -level);
-  *options = msri_setting_options(setting, integrator, fixed ? 2 * substeps << level : 1, atol);
+  if (fewest == 0)
+    return msri_fail(err, MSR_EUNSTABLE, "%s has no stable step here", e->integrator->name);
+  const double substeps = ceil((double)fewest * e->fineness * pow(2, level));
+  *options =
+      msri_setting_options(setting, e->integrator, e->integrator->adaptive ? 1 : (uint64_t)substeps,
+                           e->atol * pow(atol_ratio, -level));
   return MSR_OK;
 }
 
@@ -101,14 +114,15 @@ void msri_reference_clear(msri_reference *reference) {
 }
 
 /* A reference of the pair at a level, of 0 instants if they don't agree at all. */
-static msr_status try_level(duel *d, const struct pair *pair, int level, msr_error *err) {
+static msr_status try_level(duel *d, const pair *p, int level, msr_error *err) {
   msri_reference *r = d->made;
-  msr_status status = level_options(d->setting, pair->truth, level, &r->truth, err);
-  if (status == MSR_OK) status = level_options(d->setting, pair->witness, level, &r->witness, err);
+  msr_status status = level_options(d->setting, &p->truth, level, &r->truth, err);
+  if (status == MSR_OK) status = level_options(d->setting, &p->witness, level, &r->witness, err);
   if (status == MSR_OK) status = msri_trial_open(d->setting, &r->truth, &d->truth, err);
   if (status == MSR_OK) status = msri_trial_open(d->setting, &r->witness, &d->witness, err);
-  msri_watch_next(&d->setting->watch, d->goal->share, "reference: %s and %s, level %d",
-                  pair->truth->name, pair->witness->name, level + 1);
+  msri_watch_next(&d->setting->watch, d->goal->share, "reference: %s and %s, %llu substeps",
+                  p->truth.integrator->name, p->witness.integrator->name,
+                  (unsigned long long)r->truth.substeps);
   if (status == MSR_OK) status = fight(d, err);
   msri_trial_close(d->setting, &d->truth);
   msri_trial_close(d->setting, &d->witness);
@@ -117,12 +131,18 @@ static msr_status try_level(duel *d, const struct pair *pair, int level, msr_err
 
 /* ---- Refining */
 
-/* Does b reach further than a, or as far with half the error? */
-static bool better(const duel *d, const msri_reference *a, const msri_reference *b) {
-  if (b->n == 0) return false;
+/* Does b reach as far as a, with less error there? */
+static bool better(const msri_reference *a, const msri_reference *b) {
+  if (a->n == 0 || b->n == 0) return b->n > 0;
+  return b->n >= a->n && b->gap[a->n - 1] < a->gap[a->n - 1];
+}
+
+/* Is it so much better that still finer ones are worth trying? */
+static bool pays(const duel *d, const msri_reference *a, const msri_reference *b) {
   if (a->n == 0) return true;
-  if (b->n < a->n) return false;
-  return (double)b->n > (1 + d->goal->longer) * (double)a->n || b->gap[a->n - 1] < a->gap[a->n - 1] / 2;
+  if (!better(a, b)) return false;
+  if (b->n < d->setting->n) return (double)b->n > (1 + d->goal->longer) * (double)a->n;
+  return a->n < b->n || b->gap[a->n - 1] < a->gap[a->n - 1] / 2;
 }
 
 static bool good_enough(const duel *d, const msri_reference *r) {
@@ -132,24 +152,39 @@ static bool good_enough(const duel *d, const msri_reference *r) {
 /* Would another level, twice as long, end in time? */
 static bool time_for_more(const duel *d, double spent) {
   const msri_watch *watch = &d->setting->watch;
-  return msri_watch_elapsed(watch) + 2 * spent < d->goal->share * watch->budget;
+  return !watch->over && msri_watch_elapsed(watch) + 2 * spent < d->goal->share * watch->budget;
 }
 
-static msr_status refine(duel *d, const struct pair *pair, msri_reference *best, msr_error *err) {
-  for (int level = 0; level < MOST_LEVELS && !good_enough(d, best); level++) {
-    msri_reference next;
-    d->made = &next;
-    const double start = msri_watch_elapsed(&d->setting->watch);
-    msr_status status = reserve(d->setting, &next, err);
-    if (status == MSR_OK) status = try_level(d, pair, level, err);
-    const bool pays = status == MSR_OK && better(d, best, &next);
-    msri_reference worse = pays ? *best : next;
-    if (pays) *best = next;
-    msri_reference_clear(&worse);
-    if (status != MSR_OK || d->setting->watch.over || (!pays && best->n > 0)) return status;
-    if (!time_for_more(d, msri_watch_elapsed(&d->setting->watch) - start)) return MSR_OK;
+/* One more level; the better one of it and `best` is kept. `more`: another may be worth it. */
+static msr_status refine(duel *d, const pair *p, int level, msri_reference *best, bool *more,
+                         msr_error *err) {
+  msri_reference next;
+  const double start = msri_watch_elapsed(&d->setting->watch);
+  msr_status status = reserve(d->setting, &next, err);
+  if (status != MSR_OK) return status;
+  d->made = &next;
+  status = try_level(d, p, level, err);
+  const bool keep = status == MSR_OK && better(best, &next);
+  *more = status == MSR_OK && pays(d, best, &next) &&
+          time_for_more(d, msri_watch_elapsed(&d->setting->watch) - start);
+  msri_reference worse = keep ? *best : next;
+  if (keep) *best = next;
+  msri_reference_clear(&worse);
+  return status;
+}
+
+static msr_status refine_all(duel *d, msri_reference *best, msr_error *err) {
+  const pair *p = d->setting->contacts ? &impacts : &smooth;
+  msr_status status = MSR_OK;
+  bool more = true;
+  if (!d->setting->contacts && d->goal->enough >= quick_goal)
+    status = refine(d, &quick, 0, best, &more, err);
+  more = !d->setting->watch.over;
+  for (int level = 0; status == MSR_OK && more && level < MOST_LEVELS; level++) {
+    if (good_enough(d, best)) break;
+    status = refine(d, p, level, best, &more, err);
   }
-  return MSR_OK;
+  return status;
 }
 
 msr_status msri_reference_find(msri_setting *setting, const msri_reference_goal *goal,
@@ -157,7 +192,7 @@ msr_status msri_reference_find(msri_setting *setting, const msri_reference_goal 
   duel d = {.setting = setting, .goal = goal};
   *reference = (msri_reference){0};
   msr_error said = {MSR_OK, ""};
-  msr_status status = refine(&d, &pairs[0], reference, &said);
+  const msr_status status = refine_all(&d, reference, &said);
   if (reference->n > 0 && (status == MSR_OK || status == MSR_EUNSTABLE)) return MSR_OK;
   msri_reference_clear(reference);
   if (setting->watch.status != MSR_OK)
@@ -165,7 +200,7 @@ msr_status msri_reference_find(msri_setting *setting, const msri_reference_goal 
   if (status != MSR_OK && status != MSR_EUNSTABLE)
     return msri_hand_on(err, status, &said, "%s", msr_status_text(status));
   return msri_fail(err, MSR_EUNSTABLE,
-                   "no reference: %s and %s don't agree even at %g s; raise the budget, or lower "
+                   "no reference: no two methods agree even at %g s; raise the budget, or lower "
                    "TENSION_RESSORT or speeds",
-                   pairs[0].truth->name, pairs[0].witness->name, msri_setting_time(setting, 0));
+                   msri_setting_time(setting, 0));
 }

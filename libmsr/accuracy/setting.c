@@ -31,7 +31,8 @@ static uint64_t frame_iteration(uint64_t iterations, uint64_t images, uint64_t i
 static msr_status choose_instants(msri_setting *s, uint64_t end, msr_error *err) {
   const msr_plan_figures f = msr_plan_describe(s->plan);
   uint64_t images = f.images, frames = frames_until(f.iterations, images, end);
-  const uint64_t between = frames > 0 ? (FEWEST + frames - 1) / frames : FEWEST, room = f.iterations / images;
+  const uint64_t between = frames > 0 ? (FEWEST + frames - 1) / frames : FEWEST,
+                 room = f.iterations / images;
   if (between > 1) images *= between < room ? between : room;
   frames = frames_until(f.iterations, images, end);
   const uint64_t apart = frames / most_instants(s) + 1;
