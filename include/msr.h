@@ -653,6 +653,103 @@ typedef struct msr_run_options {
  */
 MSR_API msr_status msr_run(msr_state *state, const msr_run_options *options, msr_error *err);
 
+/* ---- Accuracy: what it costs in time --------------------------------------------------------- */
+
+/* A run of the scene with one method at one step or tolerance, compared with the reference at the
+ * frames and at the end, up to the horizon. With supports all runs locate impacts
+ * (MSR_IMPACTS_LOCATED). */
+typedef struct msr_accuracy_point {
+  const msr_integrator *integrator;
+  uint64_t substeps; /* per iteration */
+  double atol;       /* of an adaptive method; else 0 */
+  bool stable;       /* false: the run was stopped, or left the truth by the picture's size; the
+                      * errors are INFINITY then, and seconds NAN */
+  uint64_t steps, evaluations; /* of the run */
+  double seconds;  /* of the run: processor time of the thread, which a busy machine hardly changes;
+                    * the least of several runs that do nothing else; NAN: none was made */
+  double rms, max; /* error of a mass's position over all instants compared [px] */
+  double drift;    /* largest difference of the total energy from the reference's, over the largest
+                    * kinetic and spring energy; where energy is kept: its change */
+  double pixels;   /* share of the frames' pixels that differ; NAN: the scene has no picture */
+  double order;    /* measured against the same method at the next larger step; NAN: can't be */
+  bool front;      /* nothing is both faster and more accurate */
+} msr_accuracy_point;
+
+/* How far a study is. */
+typedef struct msr_accuracy_progress {
+  const char *text; /* one line for a user: "verlet, 8 substeps" */
+  double share;     /* of the budget that is used up, 0..1 */
+} msr_accuracy_progress;
+
+typedef struct msr_accuracy_options {
+  const msr_integrator *const *integrators; /* [n_integrators] */
+  size_t n_integrators; /* 0: all of msr_integrators that are stable at some step */
+  double until;         /* [s], rounded up to whole iterations; 0: the scene's whole time */
+  double budget;        /* wall time that it may take [s]; 0: 60 */
+  double finest;        /* no run aims at less error [px]; 0: 1e-10 */
+  /* Called every few milliseconds, while a step isn't longer (NULL: none); a status other than
+   * MSR_OK ends the study: what was measured so far is its result, and `complete` is false; while
+   * there is no reference yet, the status comes back. */
+  msr_status (*poll)(void *data, const msr_accuracy_progress *progress);
+  void *data;
+} msr_accuracy_options;
+
+/* The figures of a study. */
+typedef struct msr_accuracy_figures {
+  double until;           /* asked for [s] */
+  double horizon;         /* up to here the two references agree [s]: errors mean something */
+  uint64_t frames;        /* instants compared, after the start, up to the horizon */
+  double reference_error; /* largest difference of the two references up to there [px] */
+  const msr_integrator *reference; /* a run of it is the truth, */
+  uint64_t reference_substeps;
+  double reference_atol;         /* 0: it isn't adaptive */
+  const msr_integrator *witness; /* another, unrelated, tells how true it is */
+  uint64_t witness_substeps;
+  double witness_atol; /* 0: it isn't adaptive */
+  size_t masses, springs;
+  uint64_t scene_hash; /* of masses, springs, effects and times: equal for equal scenes */
+  double seconds;      /* that the study took */
+  bool complete;       /* false: the budget or poll ended it early */
+} msr_accuracy_figures;
+
+typedef struct msr_accuracy msr_accuracy;
+
+/* Runs the scene with every method at many steps or tolerances and compares. The reference is
+ * found first, in a quarter of the budget; coarse runs come before fine ones. But for `seconds` and
+ * `front`, the result depends on the clock only if the budget runs out. `options` may be NULL.
+ * MSR_EUSAGE for options out of range; MSR_EINPUT if there is no mass or no iteration;
+ * MSR_EUNSTABLE if no reference can be found, for any length of time; MSR_ENOMEM; what a force or
+ * poll returns. */
+MSR_API msr_status msr_accuracy_study(const msr_scene *scene, const msr_accuracy_options *options,
+                                      msr_accuracy **accuracy, msr_error *err);
+
+MSR_API void msr_accuracy_free(msr_accuracy *accuracy);
+
+MSR_API msr_accuracy_figures msr_accuracy_describe(const msr_accuracy *accuracy);
+
+/* All points, method by method, from the largest step to the smallest; they are the study's. */
+MSR_API const msr_accuracy_point *msr_accuracy_points(const msr_accuracy *accuracy, size_t *n);
+
+/* The fastest point whose largest error, with the reference's own, is at most `error` [px]; NULL:
+ * there is none. */
+MSR_API const msr_accuracy_point *msr_accuracy_cheapest(const msr_accuracy *accuracy, double error);
+
+/* What brings every mass within `error` [px] of the truth over the run at the least time. */
+typedef struct msr_accuracy_choice {
+  msr_plan_options options; /* for msr_plan_create */
+  double error;             /* estimated, largest over the run or up to the horizon [px] */
+  double seconds;           /* estimated, of the run */
+  double horizon;           /* [s]; below the scene's time if no error can be promised beyond it */
+  char reason[MSR_MESSAGE_SIZE]; /* one line */
+} msr_accuracy_choice;
+
+/* Chooses by short pilot studies of the scene. `options` may be NULL: its budget is 10 s here. The
+ * choice depends on the clock only if the budget runs out. As msr_accuracy_study; MSR_EUNSTABLE if
+ * nothing tried is as accurate; what poll returns. */
+MSR_API msr_status msr_accuracy_choose(const msr_scene *scene, double error,
+                                       const msr_accuracy_options *options,
+                                       msr_accuracy_choice *choice, msr_error *err);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,267 @@
+/* choose.c - the method and step that bring every mass within an error at the least work.
+ *
+ * Every method aims at the error, against a reference, on that very scene; the one whose next run
+ * promises to be the cheapest is always the next, until none can be cheaper than the best that was
+ * as accurate as asked. Over the whole run that is a proof: the run to come is the one that was
+ * tried. If the whole is too long for the budget, this is done on its beginning, then on as much
+ * as can be afforded, with those that are still in question, and errors are taken to grow on as
+ * they did: e ~ t^g with g as measured, but at least 1 for symplectic methods and 2 for others, and
+ * twice that to be safe; with supports nothing is promised beyond what was tried.
+ *
+ * Costs are counted in evaluations, and planned by the time that they take on a common machine, so
+ * that the choice is the same again. */
+#include "accuracy/aim.h"
+#include "accuracy/ladder.h"
+
+#include "base/number.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double default_budget = 10;   /* [s] */
+static const double reference_share = 0.5; /* of it */
+static const double own_share = 0.1;       /* of the error, that the reference may have */
+static const double nominal = 3e-9;        /* time of an evaluation per mass and spring [s] */
+static const double trials = 60;           /* work of a choice over that of Verlet's largest step */
+static const double in_question = 4;       /* work of a method that may yet be the best, over it */
+
+typedef struct choosing {
+  msri_setting setting;
+  msri_reference reference;
+  size_t all;         /* instants of the whole; setting.n are those of the stage under way */
+  double error;       /* asked for */
+  double wanted;      /* of a run, in the stage under way */
+  msri_aim *aim;      /* [setting.n_methods] */
+  msri_measured best; /* integrator NULL: none yet */
+} choosing;
+
+/* What the best is known from. */
+typedef struct finding {
+  msri_measured best;
+  size_t n;    /* instants up to the horizon */
+  double own;  /* error of the reference */
+  bool parted; /* the reference goes no further */
+} finding;
+
+/* ---- Methods */
+
+static msr_status begin_aims(choosing *c, msr_error *err) {
+  const uint64_t iterations = c->setting.iteration[c->reference.n - 1];
+  const bool careful = c->reference.n < c->all;
+  const size_t n = c->setting.n_methods;
+  msr_status status = MSR_OK;
+  c->aim = msri_alloc(n, sizeof *c->aim, "the methods", err);
+  if (!c->aim) return MSR_ENOMEM;
+  for (size_t i = 0; i < n && status == MSR_OK; i++)
+    status = msri_aim_begin(&c->setting, c->setting.method[i], iterations, careful, c->wanted,
+                            &c->aim[i], err);
+  return status;
+}
+
+/* The aim whose next run is the shortest, if it is shorter than the best. */
+static msri_aim *shortest(choosing *c) {
+  msri_aim *least = NULL;
+  double most = c->best.point.integrator ? c->best.cost : HUGE_VAL;
+  for (size_t i = 0; i < c->setting.n_methods; i++) {
+    if (c->aim[i].done || !(c->aim[i].cost < most)) continue;
+    least = &c->aim[i];
+    most = least->cost;
+  }
+  return least;
+}
+
+static msr_status try(choosing *c, msri_aim *aim, msr_error *err) {
+  const bool any = c->best.point.integrator != NULL;
+  const msri_limits limits = {msri_min(100 * c->error, c->setting.far),
+                              any ? c->best.cost : HUGE_VAL};
+  const msr_plan_options options = msri_aim_options(&c->setting, aim);
+  msri_measured m;
+  msri_watch_next(&c->setting.watch, 1, "choosing: %s", aim->integrator->name);
+  const msr_status status =
+      msri_measure(&c->setting, &c->reference, NULL, &options, &limits, &m, err);
+  if (c->setting.watch.over) return MSR_OK;
+  aim->done = status == MSR_EUSAGE;
+  if (status != MSR_OK) return aim->done ? MSR_OK : status;
+  const bool good = m.point.stable && m.point.max <= c->wanted;
+  if (good && (!any || m.cost < c->best.cost)) c->best = m;
+  msri_aim_next(aim, &m, c->wanted);
+  return MSR_OK;
+}
+
+static msr_status try_all(choosing *c, msr_error *err) {
+  msr_status status = MSR_OK;
+  for (msri_aim *next = shortest(c); next && status == MSR_OK; next = shortest(c)) {
+    status = try(c, next, err);
+    if (c->setting.watch.over) break;
+  }
+  return status;
+}
+
+/* ---- Stages */
+
+static double nominal_seconds(const choosing *c, double cost) {
+  const msr_plan_figures f = msr_plan_describe(c->setting.plan);
+  const double small = 20;
+  return cost * nominal * ((double)f.masses + (double)f.springs + small);
+}
+
+/* Time of an instant over that of the whole run. */
+static double share_at(const choosing *c, size_t n) {
+  return (double)c->setting.iteration[n - 1] / (double)c->setting.iteration[c->all - 1];
+}
+
+/* The last instant within a share of the run; the first at least. */
+static size_t instants_within(const choosing *c, double share) {
+  size_t n = c->all;
+  while (n > 1 && share_at(c, n) > share) n--;
+  return n;
+}
+
+/* One stage, up to setting.n and with an error that shall be at most `error` there. */
+static msr_status stage(choosing *c, double error, finding *found, msr_error *err) {
+  const double own = own_share * error;
+  const msri_reference_goal goal = {own, own, 0.25, reference_share};
+  msri_reference_clear(&c->reference);
+  msr_status status = msri_reference_find(&c->setting, &goal, &c->reference, err);
+  if (status != MSR_OK) return status;
+  c->wanted = error - msri_reference_error(&c->reference);
+  c->best = (msri_measured){0};
+  if (!c->aim) status = begin_aims(c, err);
+  if (status == MSR_OK) status = try_all(c, err);
+  if (status != MSR_OK || !c->best.point.integrator) return status;
+  *found = (finding){c->best, c->reference.n, msri_reference_error(&c->reference),
+                     c->reference.n < c->setting.n};
+  return MSR_OK;
+}
+
+/* Methods whose work isn't far above the best's go on, for a run `times` as long. */
+static void go_on(choosing *c, double times) {
+  const double best = c->best.cost;
+  for (size_t i = 0; i < c->setting.n_methods; i++) {
+    msri_aim *a = &c->aim[i];
+    const double r = a->passed > 0 ? a->passed : a->r;
+    const double cost = a->cost * pow(r / a->r, a->growth);
+    *a = (msri_aim){.integrator = a->integrator,
+                    .order = a->order,
+                    .growth = a->growth,
+                    .coarsest = a->coarsest,
+                    .r = r,
+                    .cost = times * cost,
+                    .done = !(cost <= in_question * best)};
+  }
+}
+
+/* Growth of the error with time: e ~ t^growth. */
+static double growth_of(const finding *f) {
+  const msr_integrator *integrator = f->best.point.integrator;
+  const double least = integrator->symplectic || integrator->reversible ? 1 : 2;
+  const double times = f->best.error / f->best.early;
+  return times > 0 && isfinite(times) ? msri_max(least, log(times) / log(4)) : least;
+}
+
+/* How far the whole run is beyond the first stage, and how far the second can go. */
+static size_t second_length(const choosing *c, const finding *f) {
+  const double budget = 0.8 * c->setting.watch.budget;
+  const double spent = nominal_seconds(c, c->setting.cost);
+  const double cost = c->reference.cost + in_question * f->best.cost;
+  const double share = (budget - spent) / nominal_seconds(c, cost) * share_at(c, f->n);
+  return share > 0 ? instants_within(c, share) : 1;
+}
+
+static double first_share(const choosing *c) {
+  const msr_plan_figures f = msr_plan_describe(c->setting.plan);
+  const double steps = (double)c->setting.iteration[c->all - 1] * ceil(f.dt / f.stable_step);
+  const double share = c->setting.watch.budget / 4 / nominal_seconds(c, trials * steps);
+  return share >= 0.5 ? 1 : share;
+}
+
+static msr_status choose(choosing *c, finding *found, msr_error *err) {
+  c->setting.n = instants_within(c, first_share(c));
+  msr_status status = stage(c, c->error * pow(share_at(c, c->setting.n), 1.5), found, err);
+  if (status != MSR_OK || found->n == 0 || found->parted || found->n == c->all) return status;
+  const size_t n = second_length(c, found);
+  if (share_at(c, n) < 2 * share_at(c, found->n) || c->setting.watch.over) return status;
+  go_on(c, share_at(c, n) / share_at(c, found->n));
+  c->setting.n = n;
+  const double left = pow(share_at(c, n), growth_of(found)) / (n < c->all ? 2 : 1);
+  msr_error said;
+  status = stage(c, c->error * left, found, &said);
+  return c->setting.watch.over ? MSR_OK : status;
+}
+
+/* ---- The choice */
+
+/* The largest error at a share of the run that is at or beyond what was tried. */
+static double foretold(const choosing *c, const finding *f, double share) {
+  const double tried = share_at(c, f->n), error = f->best.point.max + f->own;
+  return share > tried ? 2 * error * pow(share / tried, growth_of(f)) : error;
+}
+
+/* Share of the run over which the error can be promised. */
+static double promised(const choosing *c, const finding *f) {
+  const double tried = share_at(c, f->n);
+  if (f->n == c->all || f->parted || c->setting.contacts) return tried;
+  const double most = tried * pow(c->error / foretold(c, f, tried * (1 + 1e-9)), 1 / growth_of(f));
+  return msri_min(1, msri_max(tried, most));
+}
+
+static void explain(const choosing *c, const finding *f, msr_accuracy_choice *choice) {
+  const msr_accuracy_point *p = &f->best.point;
+  const double whole = c->setting.until, tried = whole * share_at(c, f->n);
+  char step[64], how[128] = "";
+  if (p->integrator->adaptive)
+    msri_format(step, sizeof step, "tolerance %.2g", p->atol);
+  else
+    msri_format(step, sizeof step, "%llu substep%s", (unsigned long long)p->substeps,
+                p->substeps > 1 ? "s" : "");
+  if (f->parted)
+    msri_format(how, sizeof how, ", up to %.4g s: beyond, no reference is that sure", tried);
+  else if (f->n < c->all)
+    msri_format(how, sizeof how, ", tried up to %.4g s of %.4g s", tried, whole);
+  msri_format(choice->reason, sizeof choice->reason,
+              "%s with %s takes the least work for %g px: largest error %.2g px%s",
+              p->integrator->name, step, c->error, choice->error, how);
+}
+
+static msr_status conclude(const choosing *c, const finding *f, msr_accuracy_choice *choice,
+                           msr_error *err) {
+  const msr_accuracy_point *p = &f->best.point;
+  if (f->n == 0 && c->setting.watch.over)
+    return msri_fail(err, MSR_EUNSTABLE, "nothing tried in %g s was within %g px; raise the budget",
+                     c->setting.watch.budget, c->error);
+  if (f->n == 0)
+    return msri_fail(err, MSR_EUNSTABLE,
+                     "nothing tried is within %g px; ask for a larger error, or for less time",
+                     c->error);
+  const double share = promised(c, f);
+  *choice = (msr_accuracy_choice){
+      .options = msri_setting_options(&c->setting, p->integrator, p->substeps, p->atol),
+      .error = foretold(c, f, share),
+      .seconds = p->seconds / share_at(c, f->n),
+      .horizon = share * c->setting.until,
+  };
+  explain(c, f, choice);
+  return MSR_OK;
+}
+
+msr_status msr_accuracy_choose(const msr_scene *scene, double error,
+                               const msr_accuracy_options *options, msr_accuracy_choice *choice,
+                               msr_error *err) {
+  static const msr_accuracy_options defaults = {0};
+  if (!options) options = &defaults;
+  if (!(error > 0 && isfinite(error)))
+    return msri_fail(err, MSR_EUSAGE, "the error must be a number above 0, not %g", error);
+  choosing c = {.error = error};
+  finding found = {.n = 0};
+  msr_status status = msri_setting_open(&c.setting, scene, options, default_budget, err);
+  if (status != MSR_OK) return status;
+  c.all = c.setting.n;
+  status = choose(&c, &found, err);
+  if (c.setting.watch.status != MSR_OK)
+    status = msri_fail(err, c.setting.watch.status, "stopped before the choice was made");
+  if (status == MSR_OK) status = conclude(&c, &found, choice, err);
+  msri_reference_clear(&c.reference);
+  msri_setting_close(&c.setting);
+  free(c.aim);
+  return status;
+}

@@ -1,0 +1,229 @@
+/* test_choice.c - the choice by accuracy: what it chooses is as accurate as asked, at little more
+ * than the least cost that a study of every method finds.
+ * link: --wrap=malloc --wrap=calloc --wrap=realloc */
+#include "alloc.h"
+#include "exact.h"
+
+static msr_accuracy_choice choose(const msr_scene *scene, double error) {
+  msr_accuracy_choice choice;
+  must(msr_accuracy_choose(scene, error, NULL, &choice, &why));
+  return choice;
+}
+
+/* ---- Scenes with exact solutions */
+
+static void choices_are_accurate(void **unused) {
+  (void)unused;
+  for (size_t i = 0; i < LENGTH(exacts); i++)
+    for (double asked = 1; asked > 0.9e-8; asked /= 10) {
+      msr_scene *scene = exacts[i].make();
+      const msr_accuracy_choice choice = choose(scene, asked);
+      const double error = exact_error(&exacts[i], &choice.options, choice.horizon);
+      if (error > asked || choice.error > asked || error > choice.error * (1 + 1e-9))
+        fail_msg("%s: error %g, estimated %g, asked for %g: %s", exacts[i].name, error,
+                 choice.error, asked, choice.reason);
+      msr_scene_free(scene);
+    }
+}
+
+/* ---- Ten scenes */
+
+static msr_scene *block_in_motion(int neighbours, double dt, double k, double spin, double bend) {
+  msr_scene *scene = empty_scene(dt);
+  const size_t n = 4;
+  for (size_t i = 0; i < n * n; i++) {
+    const double x = (double)(i % n), y = (double)(i / n);
+    add_mass(scene, x + bend * sin(x + 2 * y), y + bend * cos(2 * x - y), -spin * (y - 1.5),
+             spin * (x - 1.5), 0.1);
+    if (i % n > 0) must(msr_scene_add_spring(scene, i - 1, i, k, 1, &why));
+    if (i >= n) must(msr_scene_add_spring(scene, i - n, i, k, 1, &why));
+    if (neighbours == 8 && i % n > 0 && i >= n) {
+      must(msr_scene_add_spring(scene, i - n - 1, i, k, sqrt(2), &why));
+      must(msr_scene_add_spring(scene, i - n, i - 1, k, sqrt(2), &why));
+    }
+  }
+  must(msr_scene_set_times(scene, dt, 50, 50, &why));
+  return scene;
+}
+
+static msr_scene *free_block(void) { return block_in_motion(4, 0.01, 150, 0, 0.1); }
+
+static msr_scene *spinning_block(void) { return block_in_motion(8, 0.01, 150, 2, 0.1); }
+
+static msr_scene *stiff_block(void) { return block_in_motion(4, 0.02, 15000, 1, 0.003); }
+
+static msr_scene *hanging_cloth(void) {
+  return scene_of("#...#\n"
+                  "ooooo\n"
+                  "ooooo\n"
+                  "ooooo\n"
+                  ".....\n",
+                  &(msr_conf){0.02, 9.8, 0.1, 50, 50, 50}, &(msr_scene_options){.attach = true});
+}
+
+static msr_scene *bouncing_block(void) {
+  return scene_of(".ooo.\n"
+                  ".ooo.\n"
+                  ".....\n"
+                  "#####\n",
+                  &(msr_conf){0.01, 9.8, 0.1, 300, 60, 60}, NULL);
+}
+
+static msr_scene *flag_in_gusts(void) {
+  msr_scene *scene =
+      scene_of("#oooo.\n"
+               "#oooo.\n"
+               "......\n",
+               &(msr_conf){0.02, 9.8, 0.1, 80, 50, 50}, &(msr_scene_options){.attach = true});
+  add_force(scene, &msr_force_wind,
+            &(msr_wind){.c = 0.1, .speed = 10, .gust = 5, .gust_time = 0.5, .seed = 3});
+  return scene;
+}
+
+static msr_scene *damped_block(void) {
+  msr_scene *scene = block_in_motion(4, 0.01, 150, 1, 0.1);
+  add_force(scene, &msr_force_drag, &(msr_drag){0.05});
+  add_force(scene, &msr_force_damping, &(msr_damping){0.3});
+  return scene;
+}
+
+static msr_scene *pendulum(void) {
+  msr_scene *scene = empty_scene(0.02);
+  add_mass(scene, 2, 0, 0, 0, 0.3);
+  must(msr_scene_add_anchor(scene, &(msr_anchor){0, 0, 0, 40, 2}, &why));
+  add_force(scene, &msr_force_gravity, &(msr_gravity){9.8});
+  must(msr_scene_set_times(scene, 0.02, 100, 100, &why));
+  return scene;
+}
+
+static msr_scene *leaves(void) {
+  msr_scene *scene = empty_scene(0.05);
+  for (size_t i = 0; i < 5; i++)
+    add_mass(scene, (double)i, 10, 1, -(double)i, 0.1 + 0.1 * (double)i);
+  add_force(scene, &msr_force_gravity, &(msr_gravity){9.8});
+  add_force(scene, &msr_force_wind, &(msr_wind){.c = 0.3, .speed = 4, .gust = 2, .seed = 5});
+  must(msr_scene_set_times(scene, 0.05, 40, 40, &why));
+  return scene;
+}
+
+static msr_scene *pushed_block(void) {
+  msr_scene *scene = block_in_motion(4, 0.02, 100, 0, 0.1);
+  add_force(scene, &msr_force_push, &(msr_push){0, 3, 1});
+  add_force(scene, &msr_force_push, &(msr_push){15, -2, 2});
+  return scene;
+}
+
+/* `finest`: a tenth of it is the error of the fine run that they are compared with. */
+static const struct scene {
+  const char *name;
+  msr_scene *(*make)(void);
+  double finest; /* error that is asked for [px] */
+} scenes[] = {
+    {"free block", free_block, 1e-7},
+    {"spinning block", spinning_block, 1e-7},
+    {"stiff block", stiff_block, 1e-7},
+    {"hanging cloth", hanging_cloth, 1e-7},
+    {"bouncing block", bouncing_block, 1e-4},
+    {"flag in gusts", flag_in_gusts, 1e-7},
+    {"damped block", damped_block, 1e-7},
+    {"pendulum", pendulum, 1e-7},
+    {"leaves", leaves, 1e-7},
+    {"pushed block", pushed_block, 1e-7},
+};
+
+/* Positions after every iteration: x[n], y[n] each. */
+static double *track(const msr_scene *scene, const msr_plan_options *options, size_t *size,
+                     msr_work *work) {
+  world w;
+  must(msr_plan_create(scene, options, &w.plan, &why));
+  must(msr_state_create(w.plan, &w.state, &why));
+  const msr_plan_figures f = msr_plan_describe(w.plan);
+  double *q = zeroed(2 * f.masses * f.iterations, sizeof *q);
+  *size = 2 * f.masses;
+  for (uint64_t i = 0; i < f.iterations; i++) {
+    advance(&w, 1);
+    const msr_view s = msr_state_view(w.state);
+    memcpy(q + i * *size, s.x, s.n * sizeof *q);
+    memcpy(q + i * *size + s.n, s.y, s.n * sizeof *q);
+  }
+  *work = msr_state_work(w.state);
+  close_world(w);
+  return q;
+}
+
+/* The largest distance of a mass in the first `iterations`. */
+static double apart(const double *a, const double *b, size_t size, uint64_t iterations) {
+  double most = 0;
+  const size_t n = size / 2;
+  for (uint64_t i = 0; i < iterations; i++)
+    for (size_t j = 0; j < n; j++) {
+      const double *p = a + i * size + j, *q = b + i * size + j;
+      most = fmax(most, hypot(p[0] - q[0], p[n] - q[n]));
+    }
+  return most;
+}
+
+/* As the library counts: an adaptive step has overhead. */
+static double cost_of(const msr_integrator *integrator, uint64_t steps, uint64_t evaluations) {
+  const double order = integrator->order;
+  return (double)evaluations + (integrator->adaptive ? order * order / 12 * (double)steps : 0);
+}
+
+/* The least that a study found. */
+static double least_cost(const msr_accuracy *study, double error) {
+  size_t n;
+  double least = INFINITE;
+  const msr_accuracy_point *p = msr_accuracy_points(study, &n);
+  const double own = msr_accuracy_describe(study).reference_error;
+  for (size_t i = 0; i < n; i++)
+    if (p[i].stable && p[i].max + own <= error)
+      least = fmin(least, cost_of(p[i].integrator, p[i].steps, p[i].evaluations));
+  return least;
+}
+
+static void choice_is_good(const struct scene *s) {
+  msr_scene *scene = s->make();
+  size_t size;
+  msr_work work;
+  const msr_plan_options fine = {
+      .integrator = &msr_integrator_rk4, .substeps = 1500, .impacts = MSR_IMPACTS_LOCATED};
+  double *truth = track(scene, &fine, &size, &work);
+  const msr_accuracy_options options = {.finest = s->finest};
+  msr_accuracy *study;
+  must(msr_accuracy_study(scene, &options, &study, &why));
+  const msr_accuracy_figures figures = msr_accuracy_describe(study);
+  assert_true(figures.complete);
+  for (double asked = 1; asked > 0.9 * s->finest; asked /= 100) {
+    const msr_accuracy_choice choice = choose(scene, asked);
+    double *run = track(scene, &choice.options, &size, &work);
+    const double dt = figures.until / (double)figures.frames;
+    const double error = apart(run, truth, size, (uint64_t)(choice.horizon / dt + 0.5));
+    const double cost = cost_of(choice.options.integrator, work.steps, work.evaluations);
+    const double least = least_cost(study, asked);
+    free(run);
+    if (error > asked || choice.error > asked)
+      fail_msg("%s: error %g, estimated %g, asked for %g: %s", s->name, error, choice.error, asked,
+               choice.reason);
+    if (cost > 2 * least)
+      fail_msg("%s: cost %g, least %g, %g px: %s", s->name, cost, least, asked, choice.reason);
+  }
+  free(truth);
+  msr_accuracy_free(study);
+  msr_scene_free(scene);
+}
+
+static void choices_are_good(void **unused) {
+  (void)unused;
+  for (size_t i = 0; i < LENGTH(scenes); i++) {
+    printf("%s\n", scenes[i].name);
+    choice_is_good(&scenes[i]);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(choices_are_accurate),
+      cmocka_unit_test(choices_are_good),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
