@@ -49,9 +49,29 @@ msr_style simulation_style(const settings *s) {
   return style;
 }
 
+msr_status simulation_scene(const settings *s, msr_scene **scene, msr_error *err) {
+  const char *text;
+  msr_status status = load(s, scene, err);
+  if (status != MSR_OK) return status;
+  for (size_t i = 0; (text = msr_scene_warning(*scene, i)); i++) tell(s, "warning", text);
+  status = add_forces(s, *scene, err);
+  if (status != MSR_OK) msr_scene_free(*scene);
+  return status;
+}
+
+/* Tolerances are for methods that use them. */
+static msr_plan_options options_of(const settings *s) {
+  const bool adaptive = s->integrator && s->integrator->adaptive;
+  return (msr_plan_options){.integrator = s->integrator,
+                            .substeps = s->substeps,
+                            .atol = adaptive ? s->atol : 0,
+                            .rtol = adaptive ? s->rtol : 0,
+                            .impacts = (msr_impacts)s->impacts};
+}
+
 static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **plan,
                           msr_error *err) {
-  const msr_plan_options options = {.integrator = s->integrator, .substeps = s->substeps};
+  const msr_plan_options options = options_of(s);
   const char *text;
   const msr_status status = msr_plan_create(scene, &options, plan, err);
   if (status != MSR_OK) return status;
@@ -61,12 +81,9 @@ static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **
 
 msr_status simulation_plan(const settings *s, msr_plan **plan, msr_error *err) {
   msr_scene *scene = NULL;
-  const char *text;
-  msr_status status = load(s, &scene, err);
+  msr_status status = simulation_scene(s, &scene, err);
   if (status != MSR_OK) return status;
-  for (size_t i = 0; (text = msr_scene_warning(scene, i)); i++) tell(s, "warning", text);
-  status = add_forces(s, scene, err);
-  if (status == MSR_OK) status = compile(s, scene, plan, err);
+  status = compile(s, scene, plan, err);
   msr_scene_free(scene);
   return status;
 }
