@@ -2,9 +2,7 @@
 #include "help.h"
 
 #include "commands.h"
-
-/* GSL's own: the command includes no header but the library's. */
-extern const char *gsl_version;
+#include "machine.h"
 
 static const char intro[] =
     "msr simulates mass-spring systems: a picture says what there is, a conf says how\n"
@@ -21,7 +19,7 @@ static const char examples[] =
 
 void help_print_version(FILE *out) {
   fprintf(out, "msr %s (GSL %s)\nGPL-3.0-or-later: free software, without any warranty\n",
-          msr_version(), gsl_version);
+          msr_version(), machine_gsl());
 }
 
 void help_print(FILE *out) {

@@ -117,13 +117,6 @@ static void print_records(const settings *s, const msr_plan_figures *f) {
   }
 }
 
-static bool has_contact(const msr_plan *plan) {
-  size_t n;
-  const msr_effect *const effect = msr_plan_effects(plan, &n);
-  while (n > 0 && !(effect[n - 1].on && !effect[n - 1].force)) n--;
-  return n > 0;
-}
-
 msr_status plan_command(const settings *s, msr_error *err) {
   msr_plan *plan = NULL;
   const msr_status status = simulation_plan(s, &plan, err);
@@ -133,7 +126,7 @@ msr_status plan_command(const settings *s, msr_error *err) {
   print_time(&figures);
   print_integrator(s, &figures);
   print_step(&figures);
-  if (has_contact(plan)) print_impacts(&figures);
+  if (simulation_contacts(plan)) print_impacts(&figures);
   print_memory(s, &figures);
   print_frames(s, &figures);
   print_records(s, &figures);

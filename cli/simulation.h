@@ -14,6 +14,9 @@ msr_status simulation_plan(const settings *s, msr_plan **plan, msr_error *err);
 /* The style of the frames that the settings ask for. */
 msr_style simulation_style(const settings *s);
 
+/* Is there anything to hit? */
+bool simulation_contacts(const msr_plan *plan);
+
 /* A line per effect: on or off, and why. */
 void simulation_print_effects(FILE *out, const msr_plan *plan);
 
