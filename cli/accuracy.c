@@ -18,7 +18,6 @@ typedef struct files {
 /* Before the study, so that what can't be written is told at once. */
 static msr_status open_files(const settings *s, files *out, msr_error *err) {
   msr_status status = MSR_OK;
-  *out = (files){{NULL}, {NULL}};
   if (s->plot) status = figure_check(s, err);
   if (status == MSR_OK && s->csv) status = whole_file_open(s->csv, &out->csv, err);
   if (status == MSR_OK && s->plot) status = whole_file_open(s->plot, &out->figure, err);
@@ -76,8 +75,8 @@ static msr_status finish(const study *st, files *out, msr_error *err) {
 }
 
 static msr_status study_scene(const settings *s, const msr_scene *scene, msr_error *err) {
-  study st;
-  files out;
+  study st = {.s = s};
+  files out = {.csv = {.stream = NULL}};
   msr_status status = open_files(s, &out, err);
   if (status == MSR_OK) status = study_run(&st, s, scene, err);
   if (status == MSR_OK) status = finish(&st, &out, err);

@@ -2,7 +2,7 @@
  * unstable runs as crosses at the right edge. */
 #include "curves.h"
 
-#include <inttypes.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -46,7 +46,7 @@ static bool any_unstable(const study *st) {
 /* What is far below the reference's own error means nothing; some room is left there for words, and
  * at the right for unstable runs. */
 range curves_errors(const study *st) {
-  range r = {INFINITY, 0};
+  range r = {DBL_MAX, 0};
   for (size_t i = 0; i < st->n; i++) {
     if (measured(&st->point[i])) widen(&r, error_of(&st->point[i]));
   }
@@ -58,7 +58,7 @@ range curves_errors(const study *st) {
 }
 
 range curves_times(const study *st) {
-  range r = {INFINITY, 0};
+  range r = {DBL_MAX, 0};
   for (size_t i = 0; i < st->n; i++) {
     if (measured(&st->point[i])) widen(&r, time_of(&st->point[i]));
     if (!st->point[i].stable) widen(&r, would_take(st, i));
