@@ -92,21 +92,26 @@ static style style_of(const msr_integrator *integrator) {
 
 /* ---- Data */
 
+typedef struct place {
+  double error, time;
+} place;
+
 static int by_error(const void *a, const void *b) {
-  const msr_accuracy_point *const *p = a, *const *q = b;
-  return ((*p)->max > (*q)->max) - ((*p)->max < (*q)->max);
+  const place *p = a, *q = b;
+  return (p->error > q->error) - (p->error < q->error);
 }
 
 /* The Pareto front, from the smallest error. */
 static void print_front(FILE *out, const study *st) {
   size_t n = 0;
-  const msr_accuracy_point **front = malloc((st->n + 1) * sizeof *front);
+  place *front = malloc((st->n + 1) * sizeof *front);
   for (size_t i = 0; front && i < st->n; i++) {
-    if (st->point[i].front) front[n++] = &st->point[i];
+    const msr_accuracy_point *p = &st->point[i];
+    if (p->front) front[n++] = (place){error_of(p), time_of(p)};
   }
   if (front) qsort(front, n, sizeof *front, by_error);
   fputs("$front << END\nNaN NaN\n", out);
-  for (size_t i = 0; i < n; i++) fprintf(out, "%g %g\n", error_of(front[i]), time_of(front[i]));
+  for (size_t i = 0; i < n; i++) fprintf(out, "%g %g\n", front[i].error, front[i].time);
   fputs("END\n", out);
   free(front);
 }

@@ -13,17 +13,19 @@ typedef struct push {
   double fx, fy;
 } push;
 
+enum { MOST_INTEGRATORS = 64 };
+
 typedef struct settings {
   const struct command *command;
   bool named;          /* the command was named, not understood */
   const char *file[3]; /* the operands, in the user's order; the third is one too many */
   size_t n_files;
-  const char *output, *stats, *trajectory; /* NULL: not asked for */
-  const char *csv, *plot;                  /* likewise */
-  const msr_integrator *integrator;        /* NULL: auto */
-  const msr_integrator **integrators;      /* [n_integrators], of the study; none: all */
-  size_t n_integrators;
-  uint64_t substeps, impacts; /* as in msr_plan_options, and so are */
+  const char *output, *stats, *trajectory;             /* NULL: not asked for */
+  const char *csv, *plot;                              /* likewise */
+  const msr_integrator *integrator;                    /* NULL: auto */
+  const msr_integrator *integrators[MOST_INTEGRATORS]; /* [n_integrators], of the study */
+  size_t n_integrators;                                /* 0: all */
+  uint64_t substeps, impacts;                          /* as in msr_plan_options, and so are */
   double atol, rtol;
   double accuracy, until, budget; /* 0: not asked for */
   uint64_t neighbours, border_closed, seed, scale;

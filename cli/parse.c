@@ -107,13 +107,11 @@ static msr_status read_word(parser *p, const char *word) {
 
 /* Room for as many as there are words; flags of one letter may be as many as letters. */
 static msr_status make_room(int argc, char **argv, settings *s, msr_error *err) {
-  size_t letters = 0, names = 0;
+  size_t letters = 0;
   for (int i = 0; i < argc; i++) letters += strlen(argv[i]);
-  while (msr_integrators[names]) names++;
   s->pushes = calloc((size_t)argc + 1, sizeof *s->pushes);
   s->typed = calloc(letters + 1, sizeof *s->typed);
-  s->integrators = calloc(names + 1, sizeof *s->integrators);
-  if (s->pushes && s->typed && s->integrators) return MSR_OK;
+  if (s->pushes && s->typed) return MSR_OK;
   return fail(err, MSR_ENOMEM, "out of memory for the command line");
 }
 
@@ -133,5 +131,4 @@ msr_status settings_parse(int argc, char **argv, settings *s, msr_error *err) {
 void settings_free(settings *s) {
   free(s->pushes);
   free(s->typed);
-  free(s->integrators);
 }

@@ -95,6 +95,7 @@ static bool add_integrator(settings *s, const msr_integrator *integrator) {
   for (size_t i = 0; i < s->n_integrators; i++) {
     if (s->integrators[i] == integrator) return true;
   }
+  if (s->n_integrators == MOST_INTEGRATORS) return false;
   s->integrators[s->n_integrators++] = integrator;
   return true;
 }
