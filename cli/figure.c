@@ -19,7 +19,7 @@ static void print_terminal(FILE *out, const char *path) {
   fputs(svg ? "set terminal svg size 800,600 dynamic enhanced background '#ffffff'"
               " font 'DejaVu Sans,Verdana,sans-serif,11'\n"
             : "set terminal pngcairo size 1600,1200 enhanced background '#ffffff'"
-              " font 'DejaVu Sans,11' fontscale 2 linewidth 2 pointscale 1.6\n",
+              " font 'DejaVu Sans,11' fontscale 2 linewidth 2 pointscale 2.2\n",
         out);
 }
 
