@@ -14,13 +14,12 @@ number number_exact(double value) {
 
 method method_name(const msr_plan_options *options) {
   method m;
-  const char *const name = options->integrator->name;
-  const uint64_t substeps = options->substeps;
+  const int n = snprintf(m.text, sizeof m.text, "%s, %" PRIu64 " substep%s",
+                         options->integrator->name, options->substeps,
+                         options->substeps == 1 ? "" : "s");
   if (options->integrator->adaptive) {
-    snprintf(m.text, sizeof m.text, "%s, tolerance %s", name, number_exact(options->atol).text);
-  } else {
-    snprintf(m.text, sizeof m.text, "%s, %" PRIu64 " substep%s", name, substeps,
-             substeps == 1 ? "" : "s");
+    snprintf(m.text + n, sizeof m.text - (size_t)n, ", tolerance %s",
+             number_exact(options->atol).text);
   }
   return m;
 }

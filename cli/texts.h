@@ -15,7 +15,7 @@ typedef struct method {
   char text[192];
 } method;
 
-/* "verlet, 2 substeps", or "rk8pd, tolerance 1e-08" of an adaptive one. */
+/* "verlet, 2 substeps"; of an adaptive one, its tolerance: "rk8pd, 2 substeps, tolerance 1e-08". */
 method method_name(const msr_plan_options *options);
 
 /* What a point of a study was run with. */
