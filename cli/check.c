@@ -9,8 +9,18 @@
 #include <string.h>
 #include <unistd.h>
 
+static msr_status check_clashes(const settings *s, const option *o, msr_error *err) {
+  for (const char *const *other = o->clashes; *other; other++) {
+    if (!option_given(s, *other)) continue;
+    return fail(err, MSR_EUSAGE, "%s and %s contradict each other", option_spelling(o).text,
+                *other);
+  }
+  return MSR_OK;
+}
+
 static msr_status check_options(const settings *s, msr_error *err) {
-  for (const option *o = all_options; o->help; o++) {
+  msr_status status = MSR_OK;
+  for (const option *o = all_options; o->help && status == MSR_OK; o++) {
     if (!(s->given & option_bit(o))) continue;
     const spelling name = option_spelling(o);
     if (!(o->commands & s->command->bit)) {
@@ -19,14 +29,24 @@ static msr_status check_options(const settings *s, msr_error *err) {
     if (o->needs && !option_given(s, o->needs)) {
       return fail(err, MSR_EUSAGE, "%s has no effect without %s", name.text, o->needs);
     }
-    if (o->clashes && option_given(s, o->clashes)) {
-      return fail(err, MSR_EUSAGE, "%s and %s contradict each other", name.text, o->clashes);
-    }
+    status = check_clashes(s, o, err);
   }
-  if (option_given(s, "--wind") && option_given(s, "--drag") && !(s->drag > 0)) {
-    return fail(err, MSR_EUSAGE, "--drag 0 stops --wind, which acts through the drag of the air");
-  }
-  return MSR_OK;
+  return status;
+}
+
+static msr_status check_wind(const settings *s, msr_error *err) {
+  if (!option_given(s, "--wind") || !option_given(s, "--drag") || s->drag > 0) return MSR_OK;
+  return fail(err, MSR_EUSAGE, "--drag 0 stops --wind, which acts through the drag of the air");
+}
+
+static msr_status check_tolerance(const settings *s, msr_error *err) {
+  const char *const name = option_given(s, "--atol") ? "--atol" : "--rtol";
+  const bool adaptive = s->integrator && s->integrator->adaptive;
+  if (adaptive || !option_given(s, name)) return MSR_OK;
+  return fail(err, MSR_EUSAGE,
+              "%s has no effect on %s, whose steps are fixed; 'msr list' shows which integrators "
+              "are adaptive",
+              name, s->integrator ? s->integrator->name : "the integrator auto");
 }
 
 static msr_status check_trajectory(const settings *s, msr_error *err) {
@@ -61,7 +81,8 @@ static msr_status check_files(const settings *s, msr_error *err) {
 
 msr_status settings_check(const settings *s, msr_error *err) {
   static msr_status (*const checks[])(const settings *, msr_error *) = {
-      check_command, check_options, check_trajectory, check_files, places_check};
+      check_command,    check_options, check_wind,  check_tolerance,
+      check_trajectory, check_files,   places_check};
   msr_status status = MSR_OK;
   for (size_t i = 0; i < sizeof checks / sizeof checks[0] && status == MSR_OK; i++) {
     status = checks[i](s, err);

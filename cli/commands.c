@@ -8,7 +8,9 @@ const command commands[] = {
      run_command},
     {"plan", "SCENE.ppm SCENE.conf [options]", "what would be simulated, and why", FOR_PLAN, 2,
      plan_command},
-    {"list", "", "integrators, forces and their properties", FOR_LIST, 0, list_command},
+    {"accuracy", "SCENE.ppm SCENE.conf [options]", "what accuracy costs in time", FOR_ACCURACY, 2,
+     accuracy_command},
+    {"list", "", "integrators, forces, their properties", FOR_LIST, 0, list_command},
     {NULL, NULL, NULL, 0, 0, NULL},
 };
 

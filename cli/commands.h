@@ -4,8 +4,18 @@
 
 #include "options.h"
 
-/* Where an option applies: a set of commands. */
-enum { FOR_RUN = 1, FOR_PLAN = 2, FOR_LIST = 4, FOR_SCENES = FOR_RUN | FOR_PLAN, FOR_ALL = 7 };
+/* Where an option applies: a set of commands. OF_SCENE: it says what is simulated, whatever is done
+ * with it. */
+enum {
+  FOR_RUN = 1,
+  FOR_PLAN = 2,
+  FOR_ACCURACY = 4,
+  FOR_LIST = 8,
+  OF_SCENE = 16,
+  FOR_RUNS = FOR_RUN | FOR_PLAN,
+  FOR_SCENES = FOR_RUNS | FOR_ACCURACY | OF_SCENE,
+  FOR_ALL = FOR_RUNS | FOR_ACCURACY | FOR_LIST
+};
 
 typedef struct command {
   const char *name;
@@ -24,6 +34,7 @@ const command *command_find(const char *name);
 
 msr_status run_command(const settings *s, msr_error *err);
 msr_status plan_command(const settings *s, msr_error *err);
+msr_status accuracy_command(const settings *s, msr_error *err);
 msr_status list_command(const settings *s, msr_error *err);
 
 #endif

@@ -2,9 +2,7 @@
 #include "help.h"
 
 #include "commands.h"
-
-/* GSL's own: the command includes no header but the library's. */
-extern const char *gsl_version;
+#include "machine.h"
 
 static const char intro[] =
     "msr simulates mass-spring systems: a picture says what there is, a conf says how\n"
@@ -14,20 +12,21 @@ static const char examples[] =
     "examples\n"
     "  msr scene.ppm scene.conf                   frames/frame-000000.ppm ...\n"
     "  msr plan scene.ppm scene.conf --wind 40    look before you run\n"
+    "  msr scene.ppm scene.conf --accuracy 0.01   within 0.01 px, at least time\n"
     "  msr scene.ppm scene.conf --scale 4 -o - |\n"
     "    ffmpeg -f image2pipe -framerate 25 -i - -pix_fmt yuv420p film.mp4\n\n"
     "'msr COMMAND -h' tells the options of a command, 'man msr' all about them.\n";
 
 void help_print_version(FILE *out) {
   fprintf(out, "msr %s (GSL %s)\nGPL-3.0-or-later: free software, without any warranty\n",
-          msr_version(), gsl_version);
+          msr_version(), machine_gsl());
 }
 
 void help_print(FILE *out) {
   fprintf(out, "%s\nusage\n  msr %s\n", intro, commands->usage);
   fputs("  msr COMMAND ...\n  msr -h | --version\n\ncommands\n", out);
   for (const command *c = commands; c->name; c++) {
-    fprintf(out, "  %-6s %-30s %s\n", c->name, c->usage, c->summary);
+    fprintf(out, "  %-8s %-30s %s\n", c->name, c->usage, c->summary);
   }
   fprintf(out, "\n%s", examples);
 }

@@ -45,6 +45,7 @@ static msr_status set(parser *p, const option *o, const char *value) {
     return fail(p->err, MSR_EUSAGE, "%s is given twice; keep one", option_spelling(o).text);
   }
   p->s->given |= option_bit(o);
+  p->s->typed[p->s->n_typed++] = (typed){o, value};
   if (o->kind->read(o->kind, value, (char *)p->s + o->field)) return MSR_OK;
   return bad_value(p->err, o, value);
 }
@@ -104,18 +105,30 @@ static msr_status read_word(parser *p, const char *word) {
   return MSR_OK;
 }
 
+/* Room for as many as there are words; flags of one letter may be as many as letters. */
+static msr_status make_room(int argc, char **argv, settings *s, msr_error *err) {
+  size_t letters = 0;
+  for (int i = 0; i < argc; i++) letters += strlen(argv[i]);
+  s->pushes = calloc((size_t)argc + 1, sizeof *s->pushes);
+  s->typed = calloc(letters + 1, sizeof *s->typed);
+  if (s->pushes && s->typed) return MSR_OK;
+  return fail(err, MSR_ENOMEM, "out of memory for the command line");
+}
+
 msr_status settings_parse(int argc, char **argv, settings *s, msr_error *err) {
-  *s = (settings){.command = commands, .output = "frames", .gust = -1};
+  *s = (settings){.command = commands, .output = "frames", .gust = -1, .program = argv[0]};
   s->gust_time = s->restitution = 1;
   s->neighbours = 4;
   s->seed = s->scale = 1;
-  s->pushes = calloc((size_t)argc + 1, sizeof *s->pushes);
-  if (!s->pushes) return fail(err, MSR_ENOMEM, "out of memory for the command line");
+  s->atol = 1e-6;
   parser p = {.next = argv + (argc > 0), .s = s, .err = err};
-  msr_status status = MSR_OK;
+  msr_status status = make_room(argc, argv, s, err);
   while (*p.next && status == MSR_OK) status = read_word(&p, *p.next++);
   if (!option_given(s, "--gust")) s->gust = fabs(s->wind) / 2;
   return status;
 }
 
-void settings_free(settings *s) { free(s->pushes); }
+void settings_free(settings *s) {
+  free(s->pushes);
+  free(s->typed);
+}

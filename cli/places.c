@@ -2,12 +2,13 @@
  * decides if it is there, else the nearest directories above that are. */
 #include "places.h"
 
+#include "commands.h"
 #include "report.h"
 
 #include <string.h>
 #include <sys/stat.h>
 
-enum { PATH_SIZE = 4096, PLACES = 3 };
+enum { PATH_SIZE = 4096, PLACES = 5 };
 
 typedef struct place {
   const char *option, *path; /* path NULL: nothing goes there */
@@ -76,10 +77,17 @@ static msr_status check_pair(const place *a, const place *b, msr_error *err) {
               named ? "'" : "", named ? a->path : "standard output", named ? "'" : "");
 }
 
+static const char *frames_place(const settings *s) {
+  const bool writes = option_find("--output")->commands & s->command->bit;
+  return writes && !s->no_frames ? s->output : NULL;
+}
+
 msr_status places_check(const settings *s, msr_error *err) {
-  const place out[PLACES] = {{"--output", s->no_frames ? NULL : s->output},
+  const place out[PLACES] = {{"--output", frames_place(s)},
                              {"--stats", s->stats},
-                             {"--trajectory", s->trajectory}};
+                             {"--trajectory", s->trajectory},
+                             {"--csv", s->csv},
+                             {"--plot", s->plot}};
   msr_status status = MSR_OK;
   for (size_t i = 0; i < PLACES && status == MSR_OK; i++) {
     for (size_t j = 0; j < i && status == MSR_OK; j++) status = check_pair(&out[j], &out[i], err);

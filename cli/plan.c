@@ -37,13 +37,27 @@ static void print_time(const msr_plan_figures *f) {
          f->dt * (double)f->iterations, f->images);
 }
 
-static void print_step(const settings *s, const msr_plan_figures *f) {
+static void print_integrator(const settings *s, const msr_plan_figures *f) {
   const msr_integrator *i = f->integrator;
+  const char *const how = s->accuracy > 0 ? " (for --accuracy)" : " (auto)";
   label("integrator");
-  printf("%s%s: order %d, %.3g evaluation%s of the forces per step\n", i->name,
-         s->integrator ? "" : " (auto)", i->order, i->evaluations, i->evaluations > 1 ? "s" : "");
+  printf("%s%s: order %d, ", i->name, s->integrator ? "" : how, i->order);
+  if (i->evaluations > 0) {
+    printf("%.3g evaluation%s of the forces per step\n", i->evaluations,
+           i->evaluations > 1 ? "s" : "");
+  } else {
+    puts("as many evaluations of the forces as a step needs");
+  }
+}
+
+static void print_step(const msr_plan_figures *f) {
   label("step");
-  printf("%.6g s: %" PRIu64 " substep%s per DT\n", f->h, f->substeps, f->substeps > 1 ? "s" : "");
+  printf("%.6g s: %" PRIu64 " substep%s per DT", f->h, f->substeps, f->substeps > 1 ? "s" : "");
+  puts(f->integrator->adaptive ? ", divided as errors ask for" : "");
+  if (f->integrator->adaptive) {
+    label("tolerance");
+    printf("%.3g px and px/s, and %.3g of each number, a step\n", f->atol, f->rtol);
+  }
   label("stable step");
   if (isinf(f->stable_step)) {
     puts("any");
@@ -53,6 +67,14 @@ static void print_step(const settings *s, const msr_plan_figures *f) {
   } else {
     puts("none: this integrator heats whatever the step");
   }
+}
+
+static void print_impacts(const msr_plan_figures *f) {
+  static const char *const rules[] = {
+      [MSR_IMPACTS_KEPT] = "kept: energy is kept, order 1 through a bounce",
+      [MSR_IMPACTS_LOCATED] = "located: order 2 through a bounce; many heat a stiff object"};
+  label("impacts");
+  puts(rules[f->impacts]);
 }
 
 static double frame_bytes(const settings *s, const msr_plan_figures *f) {
@@ -102,7 +124,9 @@ msr_status plan_command(const settings *s, msr_error *err) {
   const msr_plan_figures figures = msr_plan_describe(plan);
   print_scene(&figures);
   print_time(&figures);
-  print_step(s, &figures);
+  print_integrator(s, &figures);
+  print_step(&figures);
+  if (simulation_contacts(plan)) print_impacts(&figures);
   print_memory(s, &figures);
   print_frames(s, &figures);
   print_records(s, &figures);

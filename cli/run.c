@@ -2,6 +2,7 @@
 #include "commands.h"
 #include "outputs.h"
 #include "report.h"
+#include "signals.h"
 #include "simulation.h"
 #include "watch.h"
 
@@ -38,9 +39,9 @@ static msr_status advance(watch *w, msr_state *state, outputs *out, msr_error *e
   const msr_run_options options = {
       .sinks = out->sink, .n_sinks = out->n + 1, .poll = watch_poll, .data = w};
   const msr_status status = msr_run(state, &options, err);
-  watch_end(w);
+  status_line_end(&w->line);
   const msr_status closed = outputs_close(out, status == MSR_OK ? err : NULL);
-  watch_end_by_pipe();
+  signals_end_by_pipe();
   return status == MSR_OK ? closed : explain(w, status, err);
 }
 

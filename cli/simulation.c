@@ -3,6 +3,7 @@
 
 #include "inputs.h"
 #include "report.h"
+#include "study.h"
 
 static msr_status load(const settings *s, msr_scene **scene, msr_error *err) {
   const msr_scene_options options = {.neighbours = (int)s->neighbours,
@@ -49,26 +50,54 @@ msr_style simulation_style(const settings *s) {
   return style;
 }
 
+msr_status simulation_scene(const settings *s, msr_scene **scene, msr_error *err) {
+  const char *text;
+  msr_status status = load(s, scene, err);
+  if (status != MSR_OK) return status;
+  for (size_t i = 0; (text = msr_scene_warning(*scene, i)); i++) tell(s, "warning", text);
+  status = add_forces(s, *scene, err);
+  if (status != MSR_OK) msr_scene_free(*scene);
+  return status;
+}
+
+/* Tolerances are for methods that use them. */
+static msr_plan_options options_of(const settings *s) {
+  const bool adaptive = s->integrator && s->integrator->adaptive;
+  return (msr_plan_options){.integrator = s->integrator,
+                            .substeps = s->substeps,
+                            .atol = adaptive ? s->atol : 0,
+                            .rtol = adaptive ? s->rtol : 0,
+                            .impacts = (msr_impacts)s->impacts};
+}
+
 static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **plan,
                           msr_error *err) {
-  const msr_plan_options options = {.integrator = s->integrator, .substeps = s->substeps};
   const char *text;
-  const msr_status status = msr_plan_create(scene, &options, plan, err);
+  const bool chooses = s->accuracy > 0;
+  msr_accuracy_choice choice = {.options = options_of(s)};
+  msr_status status = chooses ? study_choose(s, scene, &choice, err) : MSR_OK;
+  if (status == MSR_OK) status = msr_plan_create(scene, &choice.options, plan, err);
   if (status != MSR_OK) return status;
+  const msr_plan_figures figures = msr_plan_describe(*plan);
+  if (chooses) study_tell_choice(s, &choice, &figures);
   for (size_t i = 0; (text = msr_plan_warning(*plan, i)); i++) tell(s, "note", text);
   return MSR_OK;
 }
 
 msr_status simulation_plan(const settings *s, msr_plan **plan, msr_error *err) {
   msr_scene *scene = NULL;
-  const char *text;
-  msr_status status = load(s, &scene, err);
+  msr_status status = simulation_scene(s, &scene, err);
   if (status != MSR_OK) return status;
-  for (size_t i = 0; (text = msr_scene_warning(scene, i)); i++) tell(s, "warning", text);
-  status = add_forces(s, scene, err);
-  if (status == MSR_OK) status = compile(s, scene, plan, err);
+  status = compile(s, scene, plan, err);
   msr_scene_free(scene);
   return status;
+}
+
+bool simulation_contacts(const msr_plan *plan) {
+  size_t n;
+  const msr_effect *const effect = msr_plan_effects(plan, &n);
+  while (n > 0 && !(effect[n - 1].on && !effect[n - 1].force)) n--;
+  return n > 0;
 }
 
 void simulation_print_effects(FILE *out, const msr_plan *plan) {

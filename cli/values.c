@@ -57,15 +57,17 @@ static bool read_whole(const kind *k, const char *text, void *field) {
   return true;
 }
 
+static const msr_integrator *find_integrator(const char *name) {
+  const msr_integrator *const *i = msr_integrators;
+  while (*i && strcmp((*i)->name, name) != 0) i++;
+  return *i;
+}
+
 static bool read_integrator(const kind *k, const char *text, void *field) {
+  const msr_integrator *const found = find_integrator(text);
   (void)k;
-  if (strcmp(text, "auto") == 0) return true;
-  for (const msr_integrator *const *i = msr_integrators; *i; i++) {
-    if (strcmp((*i)->name, text) != 0) continue;
-    *(const msr_integrator **)field = *i;
-    return true;
-  }
-  return false;
+  if (found) *(const msr_integrator **)field = found;
+  return found || strcmp(text, "auto") == 0;
 }
 
 static const char *nearest_integrator(const char *text) {
@@ -83,6 +85,52 @@ static bool read_part(const kind *k, const char **text, bool last, void *field) 
   part[length] = '\0';
   *text += length + !last;
   return k->read(k, part, field);
+}
+
+static const kind a_name = {.read = read_integrator};
+
+/* One that is named twice counts once. */
+static bool add_integrator(settings *s, const msr_integrator *integrator) {
+  if (!integrator) return false;
+  for (size_t i = 0; i < s->n_integrators; i++) {
+    if (s->integrators[i] == integrator) return true;
+  }
+  if (s->n_integrators == MOST_INTEGRATORS) return false;
+  s->integrators[s->n_integrators++] = integrator;
+  return true;
+}
+
+static bool read_integrators(const kind *k, const char *text, void *field) {
+  const msr_integrator *integrator;
+  bool last;
+  (void)k;
+  do {
+    last = !strchr(text, ',');
+    integrator = NULL;
+    if (!read_part(&a_name, &text, last, &integrator)) return false;
+    if (!add_integrator(field, integrator)) return false;
+  } while (!last);
+  return true;
+}
+
+/* Of the first that is no name. */
+static const char *nearest_of_list(const char *text) {
+  for (bool last = false; !last;) {
+    char name[64] = "";
+    const size_t length = strcspn(text, ",");
+    snprintf(name, sizeof name, "%.*s", (int)length, text);
+    if (!find_integrator(name)) return nearest_integrator(name);
+    last = !text[length];
+    text += length + 1;
+  }
+  return NULL;
+}
+
+/* The end of the name tells the format. */
+static bool read_figure(const kind *k, const char *text, void *field) {
+  const size_t n = strlen(text);
+  const char *const end = text + (n > 4 ? n - 4 : n);
+  return (strcmp(end, ".svg") == 0 || strcmp(end, ".png") == 0) && read_path(k, text, field);
 }
 
 static bool read_push(const kind *k, const char *text, void *field) {
@@ -145,6 +193,9 @@ static const named_value degrees[] = {{"4", 4}, {"8", 8}, {NULL, 0}};
 static const named_value borders[] = {{"open", 0}, {"closed", 1}, {NULL, 0}};
 static const named_value steps[] = {{"auto", 0}, {"off", 1}, {NULL, 0}};
 
+static const named_value rules[] = {
+    {"kept", MSR_IMPACTS_KEPT}, {"located", MSR_IMPACTS_LOCATED}, {NULL, 0}};
+
 const kind a_flag = {.read = read_flag};
 const kind a_path = {.wants = "the name of a file", .read = read_path};
 const kind a_directory = {.wants = "the name of a directory, or -", .read = read_path};
@@ -160,6 +211,11 @@ const kind a_degree = {.wants = "4 or 8", .read = read_whole, .names = degrees};
 const kind a_border = {.wants = "open or closed", .read = read_whole, .names = borders};
 const kind a_substeps = {"auto, off or a whole number from 1 to 1000000000", read_whole, .least = 1,
                          .most = 1000000000, .names = steps};
+const kind a_rule = {.wants = "kept or located", .read = read_whole, .names = rules};
+const kind integrators = {.wants = "names that 'msr list' shows, with commas between them",
+                          .read = read_integrators,
+                          .nearest = nearest_of_list};
+const kind a_figure = {.wants = "a file whose name ends in .svg or .png", .read = read_figure};
 const kind an_integrator = {.wants = "auto or a name that 'msr list' shows",
                             .read = read_integrator,
                             .nearest = nearest_integrator};

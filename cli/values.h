@@ -19,6 +19,6 @@ typedef struct kind {
 } kind;
 
 extern const kind a_flag, a_path, a_directory, a_real, a_positive, a_size, a_share, a_count, a_seed,
-    a_degree, a_border, a_substeps, an_integrator, a_push, a_stripe;
+    a_degree, a_border, a_substeps, a_rule, an_integrator, integrators, a_push, a_stripe, a_figure;
 
 #endif

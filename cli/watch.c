@@ -1,59 +1,17 @@
-/* watch.c - a run as its user sees it. The signal handler only sets a flag; the run is ended
- * between two steps, so that all that was written stays whole. */
+/* watch.c - a run as its user sees it. It is ended between two steps, so that all that was written
+ * stays whole. */
 #include "watch.h"
 
-#include "report.h"
+#include "signals.h"
 
 #include <inttypes.h>
 #include <math.h>
-#include <signal.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
-
-enum { LINE = 78 };
-
-static volatile sig_atomic_t caught, times; /* the last signal, or 0; how many */
-
-/* Where a signal goes to a process and to its group it comes twice: the third is impatience. */
-static void on_signal(int number) {
-  caught = number;
-  if (++times < 3 || number == SIGPIPE) return;
-  signal(number, SIG_DFL);
-  raise(number);
-}
-
-/* With SIGXFSZ ignored, a file that would grow too large is an error of write(2). */
-static const struct answer {
-  int number;
-  void (*handler)(int);
-} answers[] = {{SIGINT, on_signal},
-               {SIGTERM, on_signal},
-               {SIGHUP, on_signal},
-               {SIGPIPE, on_signal},
-               {SIGXFSZ, SIG_IGN}};
-
-/* A signal that the caller had ignored (nohup, a job in the background) stays ignored. */
-static void answer_signals(void) {
-  for (size_t i = 0; i < sizeof answers / sizeof answers[0]; i++) {
-    struct sigaction old, action = {.sa_handler = answers[i].handler, .sa_flags = SA_RESTART};
-    sigemptyset(&action.sa_mask);
-    if (sigaction(answers[i].number, NULL, &old) != 0 || old.sa_handler == SIG_IGN) continue;
-    sigaction(answers[i].number, &action, NULL);
-  }
-}
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 void watch_start(watch *w, const settings *s, const msr_plan *plan) {
-  *w = (watch){.s = s, .plan = msr_plan_describe(plan), .started = now()};
-  w->shown = w->started;
-  w->shows = !s->quiet && isatty(STDERR_FILENO);
-  answer_signals();
+  *w = (watch){.s = s, .plan = msr_plan_describe(plan)};
+  status_line_start(&w->line, s);
+  signals_catch();
 }
 
 static void follow_energy(watch *w, double energy) {
@@ -78,38 +36,20 @@ static msr_status close_nothing(void *self, msr_error *err) {
 msr_sink watch_sink(watch *w) { return (msr_sink){w, count_frame, close_nothing}; }
 
 static void show(const watch *w, uint64_t done) {
-  char line[LINE + 1];
   const double share = (double)done / (double)w->plan.iterations;
-  const double rate = (double)done / (w->shown - w->started);
+  const double rate = (double)done / (w->line.shown - w->line.started);
   const double left = (double)(w->plan.iterations - done) / rate;
-  snprintf(line, sizeof line,
-           "frame %" PRIu64 "/%" PRIu64 "  %.0f %%  %.0f iterations/s  %.0f:%02.0f left", w->frames,
-           w->plan.images, 100 * share, rate, floor(left / 60), floor(fmod(left, 60)));
-  fprintf(stderr, "\r%-*s", LINE, line);
-  fflush(stderr);
+  status_line_show("frame %" PRIu64 "/%" PRIu64 "  %.0f %%  %.0f iterations/s  %.0f:%02.0f left",
+                   w->frames, w->plan.images, 100 * share, rate, floor(left / 60),
+                   floor(fmod(left, 60)));
 }
 
 msr_status watch_poll(void *data, const msr_state *state) {
   watch *w = data;
-  if (caught) return MSR_EINTR;
-  if (!w->shows) return MSR_OK;
-  const double time = now();
   const uint64_t done = msr_state_iteration(state);
-  if (done == 0 || time - w->shown < 0.2) return MSR_OK;
-  w->shown = time;
-  show(w, done);
+  if (signals_caught()) return MSR_EINTR;
+  if (done > 0 && status_line_due(&w->line)) show(w, done);
   return MSR_OK;
-}
-
-void watch_end(watch *w) {
-  if (w->shown > w->started) fprintf(stderr, "\r%*s\r", LINE, "");
-  w->shown = w->started;
-}
-
-void watch_end_by_pipe(void) {
-  if (caught != SIGPIPE) return;
-  signal(SIGPIPE, SIG_DFL);
-  raise(SIGPIPE);
 }
 
 static void print_where(const watch *w) {
@@ -146,7 +86,7 @@ void watch_print_summary(const watch *w, const msr_state *state) {
   if (w->s->quiet) return;
   fprintf(stderr, "msr: %" PRIu64 " frame%s", w->frames, w->frames == 1 ? "" : "s");
   print_where(w);
-  const double took = now() - w->started;
+  const double took = clock_now() - w->line.started;
   fprintf(stderr, ": %.6g s simulated in ", w->plan.dt * (double)w->plan.iterations);
   fprintf(stderr, took < 10 ? "%.2g s" : "%.0f s", took);
   if (w->s->verbose) print_energy(w);

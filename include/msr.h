@@ -357,6 +357,10 @@ MSR_API extern const msr_integrator msr_integrator_srkn6;
 MSR_API extern const msr_integrator msr_integrator_kahan_li_6;
 MSR_API extern const msr_integrator msr_integrator_kahan_li_8;
 MSR_API extern const msr_integrator msr_integrator_rk4;
+MSR_API extern const msr_integrator msr_integrator_rkf45; /* adaptive, as those that follow */
+MSR_API extern const msr_integrator msr_integrator_rkck;
+MSR_API extern const msr_integrator msr_integrator_rk8pd;
+MSR_API extern const msr_integrator msr_integrator_msadams;
 
 /* All of the above, then NULL. */
 MSR_API extern const msr_integrator *const msr_integrators[];

@@ -105,14 +105,18 @@ typedef struct world {
 } world;
 
 /* Frees the scene. */
-static inline world open_world(msr_scene *scene, const msr_integrator *integrator,
-                               uint64_t substeps) {
+static inline world open_world_with(msr_scene *scene, const msr_plan_options *options) {
   world w;
-  must(msr_plan_create(scene, &(msr_plan_options){.integrator = integrator, .substeps = substeps},
-                       &w.plan, &why));
+  must(msr_plan_create(scene, options, &w.plan, &why));
   must(msr_state_create(w.plan, &w.state, &why));
   msr_scene_free(scene);
   return w;
+}
+
+static inline world open_world(msr_scene *scene, const msr_integrator *integrator,
+                               uint64_t substeps) {
+  return open_world_with(scene,
+                         &(msr_plan_options){.integrator = integrator, .substeps = substeps});
 }
 
 static inline void close_world(world w) {

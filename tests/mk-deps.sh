@@ -22,6 +22,7 @@ test     | has clang                           | clang           | clang        
 test     | has valgrind                        | valgrind        | valgrind              | valgrind     | valgrind
 test     | has pnmtopng                        | netpbm          | netpbm-progs          | netpbm       | netpbm
 test     | has ffmpeg                          | ffmpeg          | ffmpeg-free           | ffmpeg       | ffmpeg
+test     | has gnuplot                     | gnuplot-nox     | gnuplot               | gnuplot      | gnuplot
 test     | has python3                         | python3         | python3               | python       | python
 test     | numpy                               | python3-numpy   | python3-numpy         | python-numpy | numpy
 test     | has groff                           | groff-base      | groff-base            | groff        | groff

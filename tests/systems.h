@@ -81,14 +81,20 @@ static inline void deform(world *w) {
   }
 }
 
-static inline world deformed(const struct medium *m, const msr_integrator *integrator, double dt,
-                             uint64_t substeps) {
+static inline world deformed_with(const struct medium *m, double dt,
+                                  const msr_plan_options *options) {
   msr_scene *scene = lattice(WIDTH, HEIGHT, 8, &(msr_conf){dt, 0, 0.5, 30, 1, 1});
   for (size_t f = 0; f < MOST_FORCES && m->force[f]; f++)
     add_force(scene, m->force[f], trial_params(m->force[f]));
-  world w = open_world(scene, integrator, substeps);
+  world w = open_world_with(scene, options);
   deform(&w);
   return w;
+}
+
+static inline world deformed(const struct medium *m, const msr_integrator *integrator, double dt,
+                             uint64_t substeps) {
+  return deformed_with(m, dt,
+                       &(msr_plan_options){.integrator = integrator, .substeps = substeps});
 }
 
 #endif

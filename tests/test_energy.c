@@ -95,6 +95,7 @@ static void energy_has_no_trend_if_symplectic(void **state) {
 static void energy_errors_fall_with_the_order(void **state) {
   (void)state;
   for (const msr_integrator *const *i = msr_integrators; *i; i++) {
+    if ((*i)->adaptive) continue; /* it falls with atol, not with h */
     double error[2];
     const double h = (*i)->order <= 2 ? 0.001 : (*i)->order <= 4 ? 0.006 : 0.03;
     for (int half = 0; half < 2; half++) {

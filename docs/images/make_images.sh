@@ -1,6 +1,7 @@
 #!/bin/sh
-# make_images.sh - makes the pictures of this directory: frames of examples/scenes, side by side.
-# It needs ImageMagick and the command: MSR, or build/msr.
+# make_images.sh - makes the pictures of this directory: frames of examples/scenes, side by side, and
+# a work-precision diagram.
+# It needs ImageMagick, gnuplot and the command: MSR, or build/msr.
 set -eu
 cd "$(dirname "$0")/../.."
 msr=${MSR:-build/msr}
@@ -33,6 +34,12 @@ strip letters    letters    4x1  0 50 120 374
 strip rope       rope       4x1  0 30 60 120
 strip stairs     stairs     4x1  0 100 200 300
 strip trampoline trampoline 4x1  0 40 75 180
+
+# The guide's.
+"$msr" accuracy examples/scenes/rope.ppm examples/scenes/rope.conf --attach --until 0.2 \
+  --plot "$frames/accuracy.png" > "$frames/accuracy.txt"
+convert "$frames/accuracy.png" -resize 50% -colors 64 -define png:compression-level=9 -strip \
+  docs/images/accuracy.png
 
 # The README's: every third frame of nine seconds, in real time.
 convert -delay 12 $(seq -f "$frames/letters/frame-%06.0f.ppm" 0 3 220) -colors 8 \

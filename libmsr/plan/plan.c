@@ -5,6 +5,7 @@
 
 #include "base/number.h"
 #include "formats/ppm.h"
+#include "integrators/tolerance.h"
 #include "plan/state.h"
 
 #include <stdlib.h>
@@ -197,8 +198,9 @@ msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *optio
   const msr_integrator *integrator =
       options->integrator ? options->integrator : &msr_integrator_verlet;
   msr_status status = check_integrator(integrator, err);
+  msri_tolerance tolerance = {.atol = options->atol, .rtol = options->rtol};
+  if (status == MSR_OK) status = msri_tolerance_check(&tolerance, err);
   if (status != MSR_OK) return status;
-  static const double default_atol = 1e-6;
   msr_plan *made = msri_alloc(1, sizeof *made, "a plan", err);
   if (!made) return MSR_ENOMEM;
   made->figures = (msr_plan_figures){.integrator = integrator,
@@ -206,9 +208,8 @@ msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *optio
                                      .images = scene->conf.images,
                                      .dt = scene->conf.dt,
                                      .impacts = options->impacts,
-                                     .atol = options->atol,
-                                     .rtol = options->rtol};
-  if (!(options->atol > 0 || options->rtol > 0)) made->figures.atol = default_atol;
+                                     .atol = tolerance.atol,
+                                     .rtol = tolerance.rtol};
   status = compile(made, scene, options->substeps, err);
   if (status == MSR_OK)
     *plan = made;

@@ -21,5 +21,9 @@ const msr_integrator *const msr_integrators[] = {
     &msr_integrator_kahan_li_6,
     &msr_integrator_kahan_li_8,
     &msr_integrator_rk4,
+    &msr_integrator_rkf45,
+    &msr_integrator_rkck,
+    &msr_integrator_rk8pd,
+    &msr_integrator_msadams,
     NULL,
 };

@@ -1,0 +1,15 @@
+/* signals.h - Ctrl-C and its like end the work, not msr, so that what was made stays whole. */
+#ifndef CLI_SIGNALS_H
+#define CLI_SIGNALS_H
+
+/* From here on Ctrl-C, SIGTERM, SIGHUP, of which the third ends msr at once, and SIGPIPE are only
+ * noted. */
+void signals_catch(void);
+
+/* The last that came, or 0. */
+int signals_caught(void);
+
+/* If nobody reads what msr writes any more, ends it as if SIGPIPE had not been caught. */
+void signals_end_by_pipe(void);
+
+#endif

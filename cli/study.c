@@ -1,0 +1,84 @@
+/* study.c - studies and choices, followed: a line on a terminal, an end by Ctrl-C. */
+#include "study.h"
+
+#include "report.h"
+#include "signals.h"
+#include "simulation.h"
+#include "status_line.h"
+#include "texts.h"
+
+#include <string.h>
+
+static msr_status follow(void *data, const msr_accuracy_progress *progress) {
+  if (signals_caught()) return MSR_EINTR;
+  if (status_line_due(data)) {
+    status_line_show("%3.0f %%  %s", 100 * progress->share, progress->text);
+  }
+  return MSR_OK;
+}
+
+/* What only a plan knows of the scene. */
+static msr_status look(study *st, const msr_scene *scene, msr_error *err) {
+  msr_plan *plan = NULL;
+  const msr_status status = msr_plan_create(scene, NULL, &plan, err);
+  if (status != MSR_OK) return status;
+  st->plan = msr_plan_describe(plan);
+  st->contacts = simulation_contacts(plan);
+  msr_plan_free(plan);
+  return MSR_OK;
+}
+
+static msr_status interrupted(msr_error *err) {
+  return fail(err, MSR_EINTR, "interrupted before anything was measured");
+}
+
+msr_status study_run(study *st, const settings *s, const msr_scene *scene, msr_error *err) {
+  status_line line;
+  *st = (study){.s = s};
+  const msr_accuracy_options options = {.integrators = s->integrators,
+                                        .n_integrators = s->n_integrators,
+                                        .until = s->until,
+                                        .budget = s->budget,
+                                        .poll = follow,
+                                        .data = &line};
+  msr_status status = look(st, scene, err);
+  if (status != MSR_OK) return status;
+  status_line_start(&line, s);
+  signals_catch();
+  status = msr_accuracy_study(scene, &options, &st->result, err);
+  status_line_end(&line);
+  if (status == MSR_EINTR) return interrupted(err);
+  if (status != MSR_OK) return status;
+  st->figures = msr_accuracy_describe(st->result);
+  st->point = msr_accuracy_points(st->result, &st->n);
+  return st->n == 0 && signals_caught() ? interrupted(err) : MSR_OK;
+}
+
+void study_free(study *st) { msr_accuracy_free(st->result); }
+
+msr_status study_choose(const settings *s, const msr_scene *scene, msr_accuracy_choice *choice,
+                        msr_error *err) {
+  status_line line;
+  const msr_accuracy_options options = {.poll = follow, .data = &line};
+  status_line_start(&line, s);
+  signals_catch();
+  const msr_status status = msr_accuracy_choose(scene, s->accuracy, &options, choice, err);
+  status_line_end(&line);
+  if (status != MSR_EINTR) return status;
+  return fail(err, status, "interrupted while it chose for --accuracy");
+}
+
+void study_tell_choice(const settings *s, const msr_accuracy_choice *choice,
+                       const msr_plan_figures *plan) {
+  char text[MSR_MESSAGE_SIZE];
+  const double end = plan->dt * (double)plan->iterations;
+  const bool whole = choice->horizon >= end * (1 - 1e-9);
+  const bool brief = choice->seconds < 1;
+  snprintf(text, sizeof text,
+           "--accuracy %s is%s: largest error about %.2g px up to %.6g s%s, in about %.2g %ss",
+           number_exact(s->accuracy).text, method_options(&choice->options).text, choice->error,
+           whole ? end : choice->horizon, whole ? "" : ", beyond which none can be promised",
+           choice->seconds * (brief ? 1000 : 1), brief ? "m" : "");
+  tell(s, "note", text);
+  tell(s, "note", choice->reason);
+}

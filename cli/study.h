@@ -1,0 +1,31 @@
+/* study.h - a study of accuracy as its user sees it: progress on a terminal, Ctrl-C. */
+#ifndef CLI_STUDY_H
+#define CLI_STUDY_H
+
+#include "options.h"
+
+typedef struct study {
+  const settings *s;
+  msr_accuracy *result;
+  msr_accuracy_figures figures;
+  const msr_accuracy_point *point; /* [n] */
+  size_t n;
+  msr_plan_figures plan; /* of the scene */
+  bool contacts;         /* something may be hit */
+} study;
+
+/* Studies the scene. After a signal it holds what was measured so far. What msr_accuracy_study
+ * returns. */
+msr_status study_run(study *st, const settings *s, const msr_scene *scene, msr_error *err);
+
+void study_free(study *st);
+
+/* Chooses for --accuracy. What msr_accuracy_choose returns. */
+msr_status study_choose(const settings *s, const msr_scene *scene, msr_accuracy_choice *choice,
+                        msr_error *err);
+
+/* Tells the user what was chosen for a run of this plan, and why. */
+void study_tell_choice(const settings *s, const msr_accuracy_choice *choice,
+                       const msr_plan_figures *plan);
+
+#endif

@@ -1,0 +1,133 @@
+/* table.c - what a study found, for a reader: head, table, answer. */
+#include "table.h"
+
+#include "command_line.h"
+#include "machine.h"
+#include "texts.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+typedef struct cell {
+  char text[24];
+} cell;
+
+/* "0.0123", "12.3", "12345". */
+static cell figure(double value) {
+  cell c = {"-"};
+  if (isfinite(value)) snprintf(c.text, sizeof c.text, value < 1000 ? "%.3g" : "%.0f", value);
+  return c;
+}
+
+static cell error(double value) {
+  cell c = {"-"};
+  if (isfinite(value)) snprintf(c.text, sizeof c.text, value > 0 ? "%.1e" : "%.0f", value);
+  return c;
+}
+
+/* ---- Head */
+
+static void print_truth(FILE *out, const msr_accuracy_figures *f) {
+  const msr_plan_options truth = {
+      .integrator = f->reference, .substeps = f->reference_substeps, .atol = f->reference_atol};
+  const msr_plan_options witness = {
+      .integrator = f->witness, .substeps = f->witness_substeps, .atol = f->witness_atol};
+  fprintf(out, "reference   %s; within %.2g px of %s\n", method_name(&truth).text,
+          f->reference_error, method_name(&witness).text);
+}
+
+static void print_time(FILE *out, const study *st) {
+  const msr_accuracy_figures *f = &st->figures;
+  const bool all = f->horizon >= f->until * (1 - 1e-9);
+  fprintf(out, "time        %.6g s, compared at %" PRIu64 " instants up to %.6g s%s\n", f->until,
+          f->frames, f->horizon, all ? "" : ": beyond, the reference isn't sure");
+}
+
+static void print_head(FILE *out, const study *st) {
+  const msr_accuracy_figures *f = &st->figures;
+  const machine m = machine_describe();
+  fprintf(out, "scene       %s %s, hash %016" PRIx64 "\n", st->s->file[0], st->s->file[1],
+          f->scene_hash);
+  fprintf(out, "object      masses %zu, springs %zu\n", f->masses, f->springs);
+  print_time(out, st);
+  print_truth(out, f);
+  fprintf(out, "machine     %s; %s; msr %s, GSL %s\n", m.processor, m.compiler, msr_version(),
+          machine_gsl());
+  fprintf(out, "study       %zu points in %s s%s\n", st->n, figure(f->seconds).text,
+          f->complete ? "" : ", not all that there are to measure");
+}
+
+/* ---- Table */
+
+static void print_titles(FILE *out) {
+  fprintf(out, "\n  %-17s %8s %8s %9s %7s %8s %8s %8s %8s %6s\n", "METHOD", "substeps", "steps",
+          "forces", "ms", "rms px", "max px", "energy", "pixels %", "order");
+}
+
+/* An adaptive method has a tolerance where others have substeps. */
+static cell step(const msr_accuracy_point *p) {
+  cell c;
+  if (p->integrator->adaptive) snprintf(c.text, sizeof c.text, "%.0e", p->atol);
+  if (!p->integrator->adaptive) snprintf(c.text, sizeof c.text, "%" PRIu64, p->substeps);
+  return c;
+}
+
+static cell order(double value) {
+  cell c = {"-"};
+  if (isfinite(value)) snprintf(c.text, sizeof c.text, "%.2f", value);
+  return c;
+}
+
+static void print_point(FILE *out, const msr_accuracy_point *p) {
+  fprintf(out, "%c %-17s %8s %8" PRIu64 " %9" PRIu64 " %7s %8s", p->front ? '*' : ' ',
+          p->integrator->name, step(p).text, p->steps, p->evaluations,
+          figure(1e3 * p->seconds).text, p->stable ? error(p->rms).text : "unstable");
+  if (p->stable) {
+    fprintf(out, " %8s %8s %8s %6s", error(p->max).text, error(p->drift).text,
+            figure(100 * p->pixels).text, order(p->order).text);
+  }
+  fputc('\n', out);
+}
+
+static void print_notes(FILE *out, const study *st) {
+  fputs("\n* nothing is both faster and more accurate\n"
+        "substeps: per DT, or the tolerance of a method that chooses its steps; forces: "
+        "evaluations;\n"
+        "ms: least of several runs; energy: its error over the largest kinetic and spring energy;\n"
+        "order: of the fall from the row above",
+        out);
+  fputs(st->contacts ? "; impacts are located\n\n" : "\n\n", out);
+}
+
+/* ---- Answer */
+
+static bool print_cheapest(FILE *out, const study *st, double target) {
+  const msr_accuracy_point *p = msr_accuracy_cheapest(st->result, target);
+  if (!p) {
+    fprintf(out, "nothing measured is within %g px\n", target);
+    return false;
+  }
+  msr_plan_options options = method_of(p);
+  options.impacts = st->contacts ? MSR_IMPACTS_LOCATED : MSR_IMPACTS_KEPT;
+  fprintf(out, "cheapest for %g px: %s, %s ms: ", target, method_name(&options).text,
+          figure(1e3 * p->seconds).text);
+  command_line_print_run(out, st->s, &options);
+  fputc('\n', out);
+  return true;
+}
+
+/* For 1, 0.1, 0.01 px ... down to what the reference resolves. */
+static void print_answer(FILE *out, const study *st) {
+  static const double targets[] = {1, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
+  for (size_t i = 0; i < sizeof targets / sizeof targets[0]; i++) {
+    if (targets[i] < st->figures.reference_error || !print_cheapest(out, st, targets[i])) break;
+  }
+}
+
+void table_print(FILE *out, const study *st) {
+  print_head(out, st);
+  print_titles(out);
+  for (size_t i = 0; i < st->n; i++) print_point(out, &st->point[i]);
+  print_notes(out, st);
+  print_answer(out, st);
+}
