@@ -27,11 +27,12 @@ static const double in_question = 4;       /* work of a method that may yet be t
 typedef struct choosing {
   msri_setting setting;
   msri_reference reference;
-  size_t all;         /* instants of the whole; setting.n are those of the stage under way */
-  double error;       /* asked for */
-  double wanted;      /* of a run, in the stage under way */
-  msri_aim *aim;      /* [setting.n_methods] */
-  msri_measured best; /* integrator NULL: none yet */
+  size_t all;            /* instants of the whole; setting.n are those of the stage under way */
+  double error;          /* asked for */
+  double wanted;         /* of a run, in the stage under way */
+  msri_aim *aim;         /* [setting.n_methods] */
+  msri_measured best;    /* as accurate as asked; integrator NULL: none yet */
+  msri_measured longest; /* for the longest time, the same */
 } choosing;
 
 /* What the best is known from. */
@@ -46,7 +47,8 @@ typedef struct finding {
 
 static msr_status begin_aims(choosing *c, msr_error *err) {
   const uint64_t iterations = c->setting.iteration[c->reference.n - 1];
-  const bool careful = c->reference.n<c->all, given = c->setting.watch.options->n_integrators> 0;
+  const bool careful = c->reference.n < c->all;
+  const bool given = c->setting.watch.options->n_integrators != 0;
   const size_t n = c->setting.n_methods;
   msr_status status = MSR_OK;
   c->aim = msri_alloc(n, sizeof *c->aim, "the methods", err);
@@ -74,13 +76,14 @@ static msri_aim *shortest(choosing *c) {
 
 static msr_status try(choosing *c, msri_aim *aim, msr_error *err) {
   const bool any = c->best.point.integrator != NULL;
-  const msri_limits limits = {msri_min(100 * c->error, c->setting.far),
+  const msri_limits limits = {msri_min(100 * c->error, c->setting.far), c->wanted,
                               any ? c->best.cost : HUGE_VAL};
   const msr_plan_options options = msri_aim_options(&c->setting, aim);
   msri_measured m;
   msri_watch_next(&c->setting.watch, 1, "choosing: %s", aim->integrator->name);
   const msr_status status =
       msri_measure(&c->setting, &c->reference, NULL, &options, &limits, &m, err);
+  if (m.good > c->longest.good) c->longest = m;
   if (c->setting.watch.over) return MSR_OK;
   aim->done = status == MSR_EUSAGE;
   if (status != MSR_OK) return aim->done ? MSR_OK : status;
@@ -113,6 +116,16 @@ static size_t instants_within(const choosing *c, double share) {
   return n;
 }
 
+/* When time is up before a run was as accurate as asked: the one that was for longest. */
+static msr_status settle(const choosing *c, finding *found) {
+  const msri_measured *m = &c->longest;
+  if (m->good == 0) return MSR_OK;
+  *found = (finding){*m, m->good, msri_reference_error(&c->reference), true};
+  found->best.point.max = m->good_error;
+  found->best.point.seconds *= share_at(c, m->good) / share_at(c, c->reference.n);
+  return MSR_OK;
+}
+
 /* One stage, up to setting.n and with an error of at most `share` of what is asked for there; or up
  * to the horizon, if it is before. */
 static msr_status stage(choosing *c, double share, finding *found, msr_error *err) {
@@ -122,11 +135,13 @@ static msr_status stage(choosing *c, double share, finding *found, msr_error *er
   msr_status status = msri_reference_find(&c->setting, &goal, &c->reference, err);
   if (status != MSR_OK) return status;
   const bool parted = c->reference.n < c->setting.n;
-  const double error = parted ? c->error : share * c->error;
-  c->wanted = error - msri_reference_error(&c->reference);
-  c->best = (msri_measured){0};
+  const double sure = msri_reference_error(&c->reference) / own_share;
+  c->wanted = (parted ? c->error : msri_max(share * c->error, sure)) - sure * own_share;
+  c->best = c->longest = (msri_measured){0};
   if (!c->aim) status = begin_aims(c, err);
   if (status == MSR_OK) status = try_all(c, err);
+  if (status == MSR_OK && !c->best.point.integrator && c->setting.watch.over)
+    return settle(c, found);
   if (status != MSR_OK || !c->best.point.integrator) return status;
   *found = (finding){c->best, c->reference.n, msri_reference_error(&c->reference), parted};
   return MSR_OK;
@@ -145,7 +160,7 @@ static void go_on(choosing *c, double times) {
                     .coarsest = a->coarsest,
                     .r = r,
                     .cost = times * cost,
-                    .done = !(cost <= in_question * best)};
+                    .done = !(cost <= in_question * best) || a->tries == 0};
   }
 }
 
@@ -173,17 +188,22 @@ static double first_share(const choosing *c) {
   return share >= 0.5 ? 1 : share;
 }
 
+/* Of the error asked for, what may be there after `n` instants. Supports let nothing be said of
+ * what follows: then all of it. */
+static double part(const choosing *c, size_t n, double growth) {
+  return c->setting.contacts ? 1 : pow(share_at(c, n), growth);
+}
+
 static msr_status choose(choosing *c, finding *found, msr_error *err) {
   c->setting.n = instants_within(c, first_share(c));
-  msr_status status = stage(c, pow(share_at(c, c->setting.n), 1.5), found, err);
+  msr_status status = stage(c, part(c, c->setting.n, 1.5), found, err);
   if (status != MSR_OK || found->n == 0 || found->parted || found->n == c->all) return status;
   const size_t n = second_length(c, found);
   if (share_at(c, n) < 2 * share_at(c, found->n) || c->setting.watch.over) return status;
   go_on(c, share_at(c, n) / share_at(c, found->n));
   c->setting.n = n;
-  const double left = pow(share_at(c, n), growth_of(found)) / (n < c->all ? 2 : 1);
   msr_error said;
-  status = stage(c, left, found, &said);
+  status = stage(c, part(c, n, growth_of(found)) / (n < c->all ? 2 : 1), found, &said);
   return c->setting.watch.over ? MSR_OK : status;
 }
 

@@ -25,7 +25,9 @@ typedef struct quest {
   msri_setting *setting;
   const msri_reference_goal *goal;
   msri_reference best;
-  bool more; /* was the last level worth it, and is there time for another? */
+  const msri_pair *pair; /* that made it */
+  double spent;          /* on its last level [s] */
+  bool pays;             /* was that worth it? */
 } quest;
 
 /* Does b reach as far as a, with less error there? */
@@ -50,44 +52,46 @@ static bool good_enough(const quest *q) {
 }
 
 /* Would another level, twice as long, end in time? */
-static bool time_for_more(const quest *q, double spent) {
+static bool time_for_more(const quest *q) {
   const msri_watch *watch = &q->setting->watch;
-  return !watch->over && msri_watch_elapsed(watch) + 2 * spent < q->goal->share * watch->budget;
+  return !watch->over && msri_watch_elapsed(watch) + 2 * q->spent < q->goal->share * watch->budget;
 }
 
 /* A level of a pair; it's kept if it is better than the best so far. */
-static msr_status try(quest *q, const msri_pair *pair, int level, bool *kept, msr_error *err) {
+static msr_status try(quest *q, const msri_pair *pair, int level, msr_error *err) {
   const double start = msri_watch_elapsed(&q->setting->watch);
   msri_reference next;
   msri_watch_next(&q->setting->watch, q->goal->share, "reference: %s and %s, level %d",
                   pair->truth.integrator->name, pair->witness.integrator->name, level + 1);
   const msr_status status = msri_duel(q->setting, pair, level, q->goal->parted, &next, err);
-  *kept = status == MSR_OK && better(&q->best, &next);
-  q->more = status == MSR_OK && pays(q, &q->best, &next) &&
-            time_for_more(q, msri_watch_elapsed(&q->setting->watch) - start);
-  msri_reference worse = *kept ? q->best : next;
-  if (*kept) q->best = next;
+  if (status != MSR_OK) return status;
+  const bool keep = better(&q->best, &next);
+  q->pays = pays(q, &q->best, &next);
+  msri_reference worse = keep ? q->best : next;
+  if (keep) {
+    q->best = next;
+    q->pair = pair;
+    q->spent = msri_watch_elapsed(&q->setting->watch) - start;
+  }
   msri_reference_clear(&worse);
-  return status;
+  return MSR_OK;
 }
 
 /* Refines the pair whose first level is best. */
 static msr_status try_all(quest *q, msr_error *err) {
-  const msri_pair *pair = q->setting->contacts ? impacts : smooth, *best = pair;
+  const msri_pair *pair = q->setting->contacts ? impacts : smooth;
   const size_t pairs = q->setting->contacts ? sizeof impacts / sizeof *impacts : 1;
   const bool quickly = !q->setting->contacts && q->goal->enough >= quick_goal;
-  msr_status status = MSR_OK;
-  bool kept = false;
-  if (quickly) status = try(q, &quick, 0, &kept, err);
+  msr_status status = quickly ? try(q, &quick, 0, err) : MSR_OK;
   for (size_t i = 0; status == MSR_OK && i < pairs; i++) {
     if (good_enough(q) || q->setting->watch.over) return MSR_OK;
-    status = try(q, &pair[i], 0, &kept, err);
-    if (kept) best = &pair[i];
+    status = try(q, &pair[i], 0, err);
   }
-  q->more = !q->setting->watch.over;
-  for (int level = 1; status == MSR_OK && q->more && level < MOST_LEVELS; level++) {
-    if (good_enough(q)) return MSR_OK;
-    status = try(q, best, level, &kept, err);
+  if (!q->pair || q->pair == &quick) q->pair = pair;
+  q->pays = true;
+  for (int level = 1; status == MSR_OK && level < MOST_LEVELS; level++) {
+    if (good_enough(q) || !q->pays || !time_for_more(q)) return MSR_OK;
+    status = try(q, q->pair, level, err);
   }
   return status;
 }

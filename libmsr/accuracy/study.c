@@ -84,7 +84,7 @@ static void announce(study *s, const msr_plan_options *o) {
 /* Its error, then its time, unless it is a run that was made before. */
 static msr_status measure(study *s, const msr_plan_options *options, msri_measured *m,
                           msr_error *err) {
-  const msri_limits limits = {s->setting.far, HUGE_VAL};
+  const msri_limits limits = {s->setting.far, s->setting.far, HUGE_VAL};
   announce(s, options);
   const msr_status status =
       msri_measure(&s->setting, &s->reference, &s->screens, options, &limits, m, err);
