@@ -8,15 +8,17 @@
 
 #include <math.h>
 
-static const msri_pair quick = {{&msr_integrator_srkn6, 1, 0}, {&msr_integrator_rk8pd, 1, 1e-3}};
-
 /* Whatever sees to supports is the same for all methods at the same step: there the two of a pair
- * have different ones. */
+ * have different ones. The first of each list is for a quick look. */
 static const msri_pair smooth[] = {
-    {{&msr_integrator_kahan_li_8, 1, 0}, {&msr_integrator_rk8pd, 1, 1e-6}}};
+    {{&msr_integrator_srkn6, 1, 0}, {&msr_integrator_rk8pd, 1, 1e-3}},
+    {{&msr_integrator_kahan_li_8, 1, 0}, {&msr_integrator_rk8pd, 1, 1e-6}},
+};
 static const msri_pair impacts[] = {
+    {{&msr_integrator_pefrl, 2, 0}, {&msr_integrator_verlet, 3, 0}},
     {{&msr_integrator_kahan_li_8, 1, 0}, {&msr_integrator_rk4, 3, 0}},
-    {{&msr_integrator_verlet, 12, 0}, {&msr_integrator_pefrl, 5, 0}}};
+    {{&msr_integrator_verlet, 12, 0}, {&msr_integrator_pefrl, 5, 0}},
+};
 
 static const double quick_goal = 1e-6; /* below this error a quick look is of no use [px] */
 enum { MOST_LEVELS = 12 };
@@ -77,20 +79,26 @@ static msr_status try(quest *q, const msri_pair *pair, int level, msr_error *err
   return MSR_OK;
 }
 
-/* Refines the pair whose first level is best. */
-static msr_status try_all(quest *q, msr_error *err) {
-  const msri_pair *pair = q->setting->contacts ? impacts : smooth;
-  const size_t pairs = q->setting->contacts ? sizeof impacts / sizeof *impacts : 1;
-  const bool quickly = !q->setting->contacts && q->goal->enough >= quick_goal;
-  msr_status status = quickly ? try(q, &quick, 0, err) : MSR_OK;
-  for (size_t i = 0; status == MSR_OK && i < pairs; i++) {
-    if (good_enough(q) || q->setting->watch.over) return MSR_OK;
+/* The first level of every pair, until one is good enough. */
+static msr_status try_pairs(quest *q, const msri_pair *pair, size_t n, msr_error *err) {
+  msr_status status = MSR_OK;
+  for (size_t i = q->goal->enough >= quick_goal ? 0 : 1; status == MSR_OK && i < n; i++) {
+    if (good_enough(q) || q->setting->watch.over) break;
     status = try(q, &pair[i], 0, err);
   }
-  if (!q->pair || q->pair == &quick) q->pair = pair;
+  return status;
+}
+
+/* Refines the pair whose first level is best, the quick one aside. */
+static msr_status try_all(quest *q, msr_error *err) {
+  const bool supports = q->setting->contacts;
+  const msri_pair *pair = supports ? impacts : smooth;
+  const size_t n = supports ? sizeof impacts / sizeof *impacts : sizeof smooth / sizeof *smooth;
+  msr_status status = try_pairs(q, pair, n, err);
+  if (!q->pair || q->pair == pair) q->pair = pair + 1;
   q->pays = true;
   for (int level = 1; status == MSR_OK && level < MOST_LEVELS; level++) {
-    if (good_enough(q) || !q->pays || !time_for_more(q)) return MSR_OK;
+    if (good_enough(q) || !q->pays || !time_for_more(q)) break;
     status = try(q, q->pair, level, err);
   }
   return status;

@@ -16,7 +16,7 @@ static uint64_t most_instants(const msri_setting *s) {
 
 double msri_setting_seconds(const msri_setting *s, double cost) {
   const msr_plan_figures f = msr_plan_describe(s->plan);
-  const double each = 3e-9, small = 20;
+  const double each = 2e-9, small = 20;
   return cost * each * ((double)f.masses + (double)f.springs + small);
 }
 
