@@ -18,21 +18,21 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double default_budget = 10;   /* [s] */
+static const msri_setting_defaults usual = {10, 500, 1.1};
 static const double reference_share = 0.5; /* of it */
 static const double own_share = 0.1;       /* of the error, that the reference may have */
-static const double nominal = 3e-9;        /* time of an evaluation per mass and spring [s] */
 static const double trials = 60;           /* work of a choice over that of Verlet's largest step */
 static const double in_question = 4;       /* work of a method that may yet be the best, over it */
 
 typedef struct choosing {
   msri_setting setting;
   msri_reference reference;
-  size_t all;         /* instants of the whole; setting.n are those of the stage under way */
-  double error;       /* asked for */
-  double wanted;      /* of a run, in the stage under way */
-  msri_aim *aim;      /* [setting.n_methods] */
-  msri_measured best; /* integrator NULL: none yet */
+  size_t all;            /* instants of the whole; setting.n are those of the stage under way */
+  double error;          /* asked for */
+  double wanted;         /* of a run, in the stage under way */
+  msri_aim *aim;         /* [setting.n_methods] */
+  msri_measured best;    /* as accurate as asked; integrator NULL: none yet */
+  msri_measured longest; /* for the longest time, the same */
 } choosing;
 
 /* What the best is known from. */
@@ -48,6 +48,7 @@ typedef struct finding {
 static msr_status begin_aims(choosing *c, msr_error *err) {
   const uint64_t iterations = c->setting.iteration[c->reference.n - 1];
   const bool careful = c->reference.n < c->all;
+  const bool given = c->setting.watch.options->n_integrators != 0;
   const size_t n = c->setting.n_methods;
   msr_status status = MSR_OK;
   c->aim = msri_alloc(n, sizeof *c->aim, "the methods", err);
@@ -55,6 +56,9 @@ static msr_status begin_aims(choosing *c, msr_error *err) {
   for (size_t i = 0; i < n && status == MSR_OK; i++)
     status = msri_aim_begin(&c->setting, c->setting.method[i], iterations, careful, c->wanted,
                             &c->aim[i], err);
+  /* Beyond what was tried a method of order 1 may heat, above all at supports. */
+  for (size_t i = 0; i < n && careful && !given; i++)
+    c->aim[i].done |= msri_setting_order(&c->setting, c->setting.method[i]) < 2;
   return status;
 }
 
@@ -72,13 +76,14 @@ static msri_aim *shortest(choosing *c) {
 
 static msr_status try(choosing *c, msri_aim *aim, msr_error *err) {
   const bool any = c->best.point.integrator != NULL;
-  const msri_limits limits = {msri_min(100 * c->error, c->setting.far),
+  const msri_limits limits = {msri_min(100 * c->error, c->setting.far), c->wanted,
                               any ? c->best.cost : HUGE_VAL};
   const msr_plan_options options = msri_aim_options(&c->setting, aim);
   msri_measured m;
   msri_watch_next(&c->setting.watch, 1, "choosing: %s", aim->integrator->name);
   const msr_status status =
       msri_measure(&c->setting, &c->reference, NULL, &options, &limits, &m, err);
+  if (m.good > c->longest.good) c->longest = m;
   if (c->setting.watch.over) return MSR_OK;
   aim->done = status == MSR_EUSAGE;
   if (status != MSR_OK) return aim->done ? MSR_OK : status;
@@ -99,12 +104,6 @@ static msr_status try_all(choosing *c, msr_error *err) {
 
 /* ---- Stages */
 
-static double nominal_seconds(const choosing *c, double cost) {
-  const msr_plan_figures f = msr_plan_describe(c->setting.plan);
-  const double small = 20;
-  return cost * nominal * ((double)f.masses + (double)f.springs + small);
-}
-
 /* Time of an instant over that of the whole run. */
 static double share_at(const choosing *c, size_t n) {
   return (double)c->setting.iteration[n - 1] / (double)c->setting.iteration[c->all - 1];
@@ -117,20 +116,34 @@ static size_t instants_within(const choosing *c, double share) {
   return n;
 }
 
-/* One stage, up to setting.n and with an error that shall be at most `error` there. */
-static msr_status stage(choosing *c, double error, finding *found, msr_error *err) {
-  const double own = own_share * error;
-  const msri_reference_goal goal = {own, own, 0.25, reference_share};
+/* When time is up before a run was as accurate as asked: the one that was for longest. */
+static msr_status settle(const choosing *c, finding *found) {
+  const msri_measured *m = &c->longest;
+  if (m->good == 0) return MSR_OK;
+  *found = (finding){*m, m->good, msri_reference_error(&c->reference), true};
+  found->best.point.max = m->good_error;
+  found->best.point.seconds *= share_at(c, m->good) / share_at(c, c->reference.n);
+  return MSR_OK;
+}
+
+/* One stage, up to setting.n and with an error of at most `share` of what is asked for there; or up
+ * to the horizon, if it is before. */
+static msr_status stage(choosing *c, double share, finding *found, msr_error *err) {
+  const double own = own_share * c->error;
+  const msri_reference_goal goal = {own, share * own, 0.25, reference_share};
   msri_reference_clear(&c->reference);
   msr_status status = msri_reference_find(&c->setting, &goal, &c->reference, err);
   if (status != MSR_OK) return status;
-  c->wanted = error - msri_reference_error(&c->reference);
-  c->best = (msri_measured){0};
+  const bool parted = c->reference.n < c->setting.n;
+  const double sure = msri_reference_error(&c->reference) / own_share;
+  c->wanted = (parted ? c->error : msri_max(share * c->error, sure)) - sure * own_share;
+  c->best = c->longest = (msri_measured){0};
   if (!c->aim) status = begin_aims(c, err);
   if (status == MSR_OK) status = try_all(c, err);
+  if (status == MSR_OK && !c->best.point.integrator && c->setting.watch.over)
+    return settle(c, found);
   if (status != MSR_OK || !c->best.point.integrator) return status;
-  *found = (finding){c->best, c->reference.n, msri_reference_error(&c->reference),
-                     c->reference.n < c->setting.n};
+  *found = (finding){c->best, c->reference.n, msri_reference_error(&c->reference), parted};
   return MSR_OK;
 }
 
@@ -147,7 +160,7 @@ static void go_on(choosing *c, double times) {
                     .coarsest = a->coarsest,
                     .r = r,
                     .cost = times * cost,
-                    .done = !(cost <= in_question * best)};
+                    .done = !(cost <= in_question * best) || a->tries == 0};
   }
 }
 
@@ -162,30 +175,35 @@ static double growth_of(const finding *f) {
 /* How far the whole run is beyond the first stage, and how far the second can go. */
 static size_t second_length(const choosing *c, const finding *f) {
   const double budget = 0.8 * c->setting.watch.budget;
-  const double spent = nominal_seconds(c, c->setting.cost);
+  const double spent = msri_setting_seconds(&c->setting, c->setting.cost);
   const double cost = c->reference.cost + in_question * f->best.cost;
-  const double share = (budget - spent) / nominal_seconds(c, cost) * share_at(c, f->n);
+  const double share =
+      (budget - spent) / msri_setting_seconds(&c->setting, cost) * share_at(c, f->n);
   return share > 0 ? instants_within(c, share) : 1;
 }
 
 static double first_share(const choosing *c) {
-  const msr_plan_figures f = msr_plan_describe(c->setting.plan);
-  const double steps = (double)c->setting.iteration[c->all - 1] * ceil(f.dt / f.stable_step);
-  const double share = c->setting.watch.budget / 4 / nominal_seconds(c, trials * steps);
+  const double verlet = msri_setting_verlet(&c->setting, c->setting.iteration[c->all - 1]);
+  const double share = c->setting.watch.budget / 4 / (trials * verlet);
   return share >= 0.5 ? 1 : share;
+}
+
+/* Of the error asked for, what may be there after `n` instants. Supports let nothing be said of
+ * what follows: then all of it. */
+static double part(const choosing *c, size_t n, double growth) {
+  return c->setting.contacts ? 1 : pow(share_at(c, n), growth);
 }
 
 static msr_status choose(choosing *c, finding *found, msr_error *err) {
   c->setting.n = instants_within(c, first_share(c));
-  msr_status status = stage(c, c->error * pow(share_at(c, c->setting.n), 1.5), found, err);
+  msr_status status = stage(c, part(c, c->setting.n, 1.5), found, err);
   if (status != MSR_OK || found->n == 0 || found->parted || found->n == c->all) return status;
   const size_t n = second_length(c, found);
   if (share_at(c, n) < 2 * share_at(c, found->n) || c->setting.watch.over) return status;
   go_on(c, share_at(c, n) / share_at(c, found->n));
   c->setting.n = n;
-  const double left = pow(share_at(c, n), growth_of(found)) / (n < c->all ? 2 : 1);
   msr_error said;
-  status = stage(c, c->error * left, found, &said);
+  status = stage(c, part(c, n, growth_of(found)) / (n < c->all ? 2 : 1), found, &said);
   return c->setting.watch.over ? MSR_OK : status;
 }
 
@@ -253,7 +271,7 @@ msr_status msr_accuracy_choose(const msr_scene *scene, double error,
     return msri_fail(err, MSR_EUSAGE, "the error must be a number above 0, not %g", error);
   choosing c = {.error = error};
   finding found = {.n = 0};
-  msr_status status = msri_setting_open(&c.setting, scene, options, default_budget, err);
+  msr_status status = msri_setting_open(&c.setting, scene, options, &usual, err);
   if (status != MSR_OK) return status;
   c.all = c.setting.n;
   status = choose(&c, &found, err);

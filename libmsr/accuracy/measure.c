@@ -46,6 +46,8 @@ typedef struct course {
   size_t done; /* instants */
   double squares, max, energy, scale, pixels;
   double early; /* max in the first quarter */
+  double wanted, good_error;
+  size_t good;
 } course;
 
 static void compare_positions(course *c, const double *q) {
@@ -76,6 +78,9 @@ static void compare(course *c) {
     c->pixels += (double)differing(c->screens, q, c->trial.state);
   if (4 * c->setting->iteration[c->done] <= end_of(c)) c->early = c->max;
   c->done++;
+  if (!(c->max <= c->wanted)) return;
+  c->good = c->done;
+  c->good_error = c->max;
 }
 
 /* Up to the horizon, or to where the error is beyond `most`. */
@@ -107,7 +112,6 @@ static void fill(const course *c, msr_accuracy_point *point) {
   const msr_plan_figures f = msr_plan_describe(c->setting->plan);
   const double instants = (double)c->done, pixels = (double)f.width * (double)f.height;
   point->stable = true;
-  point->seconds = c->trial.seconds;
   point->rms = sqrt(c->squares / (instants * (double)c->setting->masses));
   point->max = c->max;
   point->drift = c->scale > 0 ? c->energy / c->scale : 0;
@@ -127,7 +131,10 @@ static msr_status run(course *c, const msri_limits *limits, msri_measured *measu
   measured->cost = msri_trial_cost(c->trial.state);
   measured->error = c->max;
   measured->early = c->early;
+  measured->good = c->good;
+  measured->good_error = c->good_error;
   measured->share = (double)c->trial.state->iteration / (double)end_of(c);
+  point->seconds = c->trial.seconds / measured->share;
   const bool ended = (status == MSR_EUNSTABLE || watch->costly) && !watch->over;
   return ended ? MSR_OK : status;
 }
@@ -135,7 +142,8 @@ static msr_status run(course *c, const msri_limits *limits, msri_measured *measu
 msr_status msri_measure(msri_setting *setting, const msri_reference *reference,
                         const msri_screens *screens, const msr_plan_options *options,
                         const msri_limits *limits, msri_measured *measured, msr_error *err) {
-  course c = {.setting = setting, .reference = reference, .screens = screens};
+  course c = {
+      .setting = setting, .reference = reference, .screens = screens, .wanted = limits->wanted};
   *measured = (msri_measured){.point = blank(options)};
   msr_status status = msri_trial_open(setting, options, &c.trial, err);
   if (status != MSR_OK) return status;

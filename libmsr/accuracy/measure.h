@@ -16,16 +16,20 @@ void msri_screens_close(msri_screens *screens);
 
 /* Where a run may be ended. */
 typedef struct msri_limits {
-  double error; /* largest that is still of interest [px] */
-  double cost;  /* the same */
+  double error;  /* largest that is still of interest [px] */
+  double wanted; /* largest that is good [px] */
+  double cost;   /* the same */
 } msri_limits;
 
 typedef struct msri_measured {
-  msr_accuracy_point point; /* order and front aside; seconds are what this one run took */
-  double cost;
-  double share; /* of the time up to the horizon that was run */
-  double error; /* largest in that time, also if the run was ended */
-  double early; /* in the first quarter of the time up to the horizon */
+  msr_accuracy_point point; /* order and front aside; seconds are those of this one run's steps, as
+                             * if it had come to the horizon */
+  double cost;              /* msri_trial_cost */
+  double share;             /* of the time up to the horizon that was run */
+  double error;             /* largest in that time, also if the run was ended */
+  double early;             /* in the first quarter of the time up to the horizon */
+  size_t good;              /* instants up to which it is as wanted, */
+  double good_error;        /* and the largest there */
 } msri_measured;
 
 /* Runs up to the reference's horizon. `screens` NULL: no pixels. MSR_OK, with a point that isn't

@@ -1,11 +1,8 @@
-/* setting.c - what all runs of a study share. Runs are compared at the instants of the frames and
- * at the end; at every m-th frame if there are very many, evenly spread if there are few. */
+/* setting.c - what all runs of a study share. */
 #include "accuracy/setting.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-enum { FEWEST = 32, MOST = 10000 };
 
 /* Memory for the positions of one reference. There are two while it is refined. */
 static const double most_bytes = 128e6;
@@ -13,36 +10,39 @@ static const double most_bytes = 128e6;
 /* ---- Instants */
 
 static uint64_t most_instants(const msri_setting *s) {
-  const double fit = most_bytes / (2 * (double)s->masses * sizeof(double));
-  return fit < 2 ? 2 : fit < MOST ? (uint64_t)fit : MOST;
+  const double fit = most_bytes / (2 * (double)s->masses * sizeof(double)), most = 10000;
+  return fit < 2 ? 2 : fit < most ? (uint64_t)fit : (uint64_t)most;
 }
 
-/* Instants in iterations 1 .. end, were there `images` frames in the whole run. */
-static uint64_t frames_until(uint64_t iterations, uint64_t images, uint64_t end) {
-  return (uint64_t)ceil((double)(end + 1) * (double)images / (double)iterations) - 1;
-}
-
-/* i * iterations / images without overflow. */
-static uint64_t frame_iteration(uint64_t iterations, uint64_t images, uint64_t i) {
-  return iterations / images * i + iterations % images * i / images;
-}
-
-/* Few frames have others between them, many are passed over. */
-static msr_status choose_instants(msri_setting *s, uint64_t end, msr_error *err) {
+double msri_setting_seconds(const msri_setting *s, double cost) {
   const msr_plan_figures f = msr_plan_describe(s->plan);
-  uint64_t images = f.images, frames = frames_until(f.iterations, images, end);
-  const uint64_t between = frames > 0 ? (FEWEST + frames - 1) / frames : FEWEST,
-                 room = f.iterations / images;
-  if (between > 1) images *= between < room ? between : room;
-  frames = frames_until(f.iterations, images, end);
-  const uint64_t apart = frames / most_instants(s) + 1;
-  s->iteration = msri_alloc(frames / apart + 1, sizeof *s->iteration, "the instants", err);
-  if (!s->iteration) return MSR_ENOMEM;
-  for (uint64_t i = apart; i <= frames; i += apart) {
-    const uint64_t iteration = frame_iteration(f.iterations, images, i);
-    if (iteration < end) s->iteration[s->n++] = iteration;
-  }
-  s->iteration[s->n++] = end;
+  const double each = 2e-9, small = 20;
+  return cost * each * ((double)f.masses + (double)f.springs + small);
+}
+
+/* How long Verlet's largest stable steps up to an iteration might take [s]. */
+double msri_setting_verlet(const msri_setting *s, uint64_t iteration) {
+  const msr_plan_figures f = msr_plan_describe(s->plan);
+  const double substeps = f.stable_step < f.dt ? ceil(f.dt / f.stable_step) : 1;
+  return msri_setting_seconds(s, substeps * (double)iteration);
+}
+
+static msr_status choose_instants(msri_setting *s, uint64_t end,
+                                  const msri_setting_defaults *defaults, msr_error *err) {
+  const msr_plan_figures f = msr_plan_describe(s->plan);
+  const uint64_t frame = f.iterations / f.images;
+  const bool slow = 1000 * msri_setting_verlet(s, frame) > s->watch.budget;
+  msri_instants made;
+  const msri_instants_wanted wanted = {.iterations = f.iterations,
+                                       .images = f.images,
+                                       .end = end,
+                                       .fewest = defaults->fewest,
+                                       .most = most_instants(s),
+                                       .ratio = slow ? 1.5 : defaults->ratio};
+  const msr_status status = msri_instants_choose(&wanted, &made, err);
+  if (status != MSR_OK) return status;
+  s->n = made.n;
+  s->iteration = made.iteration;
   return MSR_OK;
 }
 
@@ -119,7 +119,8 @@ static msr_status look_at_effects(msri_setting *s, msr_error *err) {
   return MSR_OK;
 }
 
-static msr_status fill(msri_setting *s, const msr_accuracy_options *options, msr_error *err) {
+static msr_status fill(msri_setting *s, const msr_accuracy_options *options,
+                       const msri_setting_defaults *defaults, msr_error *err) {
   const msr_conf *conf = &s->scene->conf;
   if (s->masses == 0) return msri_fail(err, MSR_EINPUT, "the scene has no mass: nothing moves");
   if (conf->iterations == 0)
@@ -133,18 +134,19 @@ static msr_status fill(msri_setting *s, const msr_accuracy_options *options, msr
   if (status == MSR_OK) status = look_at_effects(s, err);
   if (status == MSR_OK) status = list_methods(s, options, err);
   if (status != MSR_OK) return status;
-  return choose_instants(s, all ? conf->iterations : (uint64_t)asked, err);
+  return choose_instants(s, all ? conf->iterations : (uint64_t)asked, defaults, err);
 }
 
 msr_status msri_setting_open(msri_setting *setting, const msr_scene *scene,
-                             const msr_accuracy_options *options, double budget, msr_error *err) {
-  static const msr_accuracy_options defaults = {0};
-  if (!options) options = &defaults;
+                             const msr_accuracy_options *options,
+                             const msri_setting_defaults *defaults, msr_error *err) {
+  static const msr_accuracy_options none = {0};
+  if (!options) options = &none;
   *setting = (msri_setting){.scene = scene, .masses = msr_scene_masses(scene)};
   msr_status status = check(options, err);
   if (status != MSR_OK) return status;
-  msri_watch_begin(&setting->watch, options, budget);
-  status = fill(setting, options, err);
+  msri_watch_begin(&setting->watch, options, defaults->budget);
+  status = fill(setting, options, defaults, err);
   if (status != MSR_OK) msri_setting_close(setting);
   return status;
 }

@@ -3,6 +3,7 @@
 #ifndef MSRI_SETTING_H
 #define MSRI_SETTING_H
 
+#include "accuracy/instants.h"
 #include "accuracy/watch.h"
 
 typedef struct msri_setting {
@@ -21,9 +22,17 @@ typedef struct msri_setting {
   uint64_t *iteration; /* [n] rising, from 1 on: the last one is the end of what is asked for */
 } msri_setting;
 
-/* `budget`: the default. MSR_EUSAGE, MSR_EINPUT, MSR_ENOMEM, and as msr_plan_create. */
+/* What is for a study, or for a choice. */
+typedef struct msri_setting_defaults {
+  double budget;   /* [s] */
+  uint64_t fewest; /* instants: fewer frames have others between them */
+  double ratio;    /* of early instants; 0: any */
+} msri_setting_defaults;
+
+/* MSR_EUSAGE, MSR_EINPUT, MSR_ENOMEM, and as msr_plan_create. */
 msr_status msri_setting_open(msri_setting *setting, const msr_scene *scene,
-                             const msr_accuracy_options *options, double budget, msr_error *err);
+                             const msr_accuracy_options *options,
+                             const msri_setting_defaults *defaults, msr_error *err);
 void msri_setting_close(msri_setting *setting);
 
 /* Options of a run's plan; an adaptive method ignores what a fixed step needs, and the other way
@@ -41,6 +50,13 @@ msr_status msri_setting_fewest(const msri_setting *setting, const msr_integrator
 
 /* Order of a method here. */
 int msri_setting_order(const msri_setting *setting, const msr_integrator *integrator);
+
+/* How long a run of a cost (msri_trial_cost) takes on a common machine [s]: for plans that don't
+ * depend on this one. */
+double msri_setting_seconds(const msri_setting *setting, double cost);
+
+/* The same of Verlet's largest stable steps up to an iteration. */
+double msri_setting_verlet(const msri_setting *setting, uint64_t iteration);
 
 /* Hash of all that the scene holds: masses, springs, forces, supports, times. */
 uint64_t msri_scene_hash(const msr_scene *scene);

@@ -10,8 +10,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double default_budget = 60, reference_share = 0.25; /* [s] */
-static const double default_finest = 1e-10;                      /* [px] */
+static const msri_setting_defaults usual = {60, 32, 0};
+static const double reference_share = 0.25; /* of the budget */
+static const double default_finest = 1e-10; /* [px] */
 static const double parted = 1e-3;  /* where references differ by so much, they have parted [px] */
 static const double hopeless = 100; /* times the work of a method that is as good */
 
@@ -83,7 +84,7 @@ static void announce(study *s, const msr_plan_options *o) {
 /* Its error, then its time, unless it is a run that was made before. */
 static msr_status measure(study *s, const msr_plan_options *options, msri_measured *m,
                           msr_error *err) {
-  const msri_limits limits = {s->setting.far, HUGE_VAL};
+  const msri_limits limits = {s->setting.far, s->setting.far, HUGE_VAL};
   announce(s, options);
   const msr_status status =
       msri_measure(&s->setting, &s->reference, &s->screens, options, &limits, m, err);
@@ -145,7 +146,7 @@ static void describe(study *s) {
 }
 
 static msr_status run(study *s, msr_error *err) {
-  const msri_reference_goal goal = {parted, s->finest / 4, 0.05, reference_share};
+  const msri_reference_goal goal = {parted, s->finest / 4, 0, reference_share};
   msr_status status = msri_reference_find(&s->setting, &goal, &s->reference, err);
   if (status == MSR_OK) status = msri_screens_open(&s->setting, &s->screens, err);
   if (status == MSR_OK) status = begin_ladders(s, err);
@@ -169,7 +170,7 @@ msr_status msr_accuracy_study(const msr_scene *scene, const msr_accuracy_options
   static const msr_accuracy_options defaults = {0};
   if (!options) options = &defaults;
   study s = {.finest = options->finest > 0 ? options->finest : default_finest};
-  msr_status status = msri_setting_open(&s.setting, scene, options, default_budget, err);
+  msr_status status = msri_setting_open(&s.setting, scene, options, &usual, err);
   if (status != MSR_OK) return status;
   s.made = msri_alloc(1, sizeof *s.made, "a study", err);
   status = s.made ? run(&s, err) : MSR_ENOMEM;
