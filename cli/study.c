@@ -17,12 +17,11 @@ static msr_status follow(void *data, const msr_accuracy_progress *progress) {
   return MSR_OK;
 }
 
-/* What only a plan knows of the scene. */
-static msr_status look(study *st, const msr_scene *scene, msr_error *err) {
+/* Only a plan tells. */
+static msr_status look_for_contacts(study *st, const msr_scene *scene, msr_error *err) {
   msr_plan *plan = NULL;
   const msr_status status = msr_plan_create(scene, NULL, &plan, err);
   if (status != MSR_OK) return status;
-  st->plan = msr_plan_describe(plan);
   st->contacts = simulation_contacts(plan);
   msr_plan_free(plan);
   return MSR_OK;
@@ -41,10 +40,9 @@ msr_status study_run(study *st, const settings *s, const msr_scene *scene, msr_e
                                         .budget = s->budget,
                                         .poll = follow,
                                         .data = &line};
-  msr_status status = look(st, scene, err);
+  msr_status status = look_for_contacts(st, scene, err);
   if (status != MSR_OK) return status;
   status_line_start(&line, s);
-  signals_catch();
   status = msr_accuracy_study(scene, &options, &st->result, err);
   status_line_end(&line);
   if (status == MSR_EINTR) return interrupted(err);

@@ -10,12 +10,11 @@ typedef struct study {
   msr_accuracy_figures figures;
   const msr_accuracy_point *point; /* [n] */
   size_t n;
-  msr_plan_figures plan; /* of the scene */
-  bool contacts;         /* something may be hit */
+  bool contacts; /* something may be hit: impacts were located */
 } study;
 
-/* Studies the scene. After a signal it holds what was measured so far. What msr_accuracy_study
- * returns. */
+/* Studies the scene; signals must be caught already. After a signal it holds what was measured so
+ * far. What msr_accuracy_study returns. */
 msr_status study_run(study *st, const settings *s, const msr_scene *scene, msr_error *err);
 
 void study_free(study *st);

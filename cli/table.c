@@ -39,8 +39,9 @@ static void print_truth(FILE *out, const msr_accuracy_figures *f) {
 static void print_time(FILE *out, const study *st) {
   const msr_accuracy_figures *f = &st->figures;
   const bool all = f->horizon >= f->until * (1 - 1e-9);
-  fprintf(out, "time        %.6g s, compared at %" PRIu64 " instants up to %.6g s%s\n", f->until,
-          f->frames, f->horizon, all ? "" : ": beyond, the reference isn't sure");
+  fprintf(out, "time        %.6g s, compared at %" PRIu64 " instant%s up to %.6g s%s\n", f->until,
+          f->frames, f->frames == 1 ? "" : "s", f->horizon,
+          all ? "" : ": beyond, the reference is not sure");
 }
 
 static void print_head(FILE *out, const study *st) {
@@ -53,8 +54,8 @@ static void print_head(FILE *out, const study *st) {
   print_truth(out, f);
   fprintf(out, "machine     %s; %s; msr %s, GSL %s\n", m.processor, m.compiler, msr_version(),
           machine_gsl());
-  fprintf(out, "study       %zu points in %s s%s\n", st->n, figure(f->seconds).text,
-          f->complete ? "" : ", not all that there are to measure");
+  fprintf(out, "study       %zu point%s in %s s%s\n", st->n, st->n == 1 ? "" : "s",
+          figure(f->seconds).text, f->complete ? "" : ", not all that there are to measure");
 }
 
 /* ---- Table */
