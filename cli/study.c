@@ -66,17 +66,12 @@ msr_status study_choose(const settings *s, const msr_scene *scene, msr_accuracy_
   return fail(err, status, "interrupted while it chose for --accuracy");
 }
 
-void study_tell_choice(const settings *s, const msr_accuracy_choice *choice,
-                       const msr_plan_figures *plan) {
-  char text[MSR_MESSAGE_SIZE];
-  const double end = plan->dt * (double)plan->iterations;
-  const bool whole = choice->horizon >= end * (1 - 1e-9);
+void study_tell_choice(const settings *s, const msr_accuracy_choice *choice) {
+  char text[2 * MSR_MESSAGE_SIZE];
   const bool brief = choice->seconds < 1;
-  snprintf(text, sizeof text,
-           "--accuracy %s is%s: largest error about %.2g px up to %.6g s%s, in about %.2g %ss",
-           number_exact(s->accuracy).text, method_options(&choice->options).text, choice->error,
-           whole ? end : choice->horizon, whole ? "" : ", beyond which none can be promised",
+  snprintf(text, sizeof text, "--accuracy %s: %s", number_exact(s->accuracy).text, choice->reason);
+  tell(s, "note", text);
+  snprintf(text, sizeof text, "that is%s, in about %.3g %ss", method_options(&choice->options).text,
            choice->seconds * (brief ? 1000 : 1), brief ? "m" : "");
   tell(s, "note", text);
-  tell(s, "note", choice->reason);
 }

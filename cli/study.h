@@ -23,8 +23,7 @@ void study_free(study *st);
 msr_status study_choose(const settings *s, const msr_scene *scene, msr_accuracy_choice *choice,
                         msr_error *err);
 
-/* Tells the user what was chosen for a run of this plan, and why. */
-void study_tell_choice(const settings *s, const msr_accuracy_choice *choice,
-                       const msr_plan_figures *plan);
+/* Tells the user what was chosen, and why. */
+void study_tell_choice(const settings *s, const msr_accuracy_choice *choice);
 
 #endif
