@@ -11,6 +11,7 @@ typedef struct study {
   const msr_accuracy_point *point; /* [n] */
   size_t n;
   bool contacts; /* something may be hit: impacts were located */
+  bool *risky;   /* [n]: stable so far, at a step that may explode in the rest of the scene */
 } study;
 
 /* Studies the scene; signals must be caught already. After a signal it holds what was measured so
