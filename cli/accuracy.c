@@ -65,9 +65,9 @@ static msr_status write_all(const study *st, files *out, msr_error *err) {
 static msr_status finish(const study *st, files *out, msr_error *err) {
   const int caught = signals_caught();
   const msr_status status = write_all(st, out, err);
-  signals_end_by_pipe();
   if (status != MSR_OK) return status;
-  if (caught) return fail(err, MSR_EINTR, "interrupted after %zu points", st->n);
+  if (caught)
+    return fail(err, MSR_EINTR, "interrupted after %zu point%s", st->n, st->n == 1 ? "" : "s");
   if (!st->figures.complete) {
     tell(st->s, "note", "time ran out before all was measured; --budget SECONDS gives more");
   }
@@ -77,11 +77,13 @@ static msr_status finish(const study *st, files *out, msr_error *err) {
 static msr_status study_scene(const settings *s, const msr_scene *scene, msr_error *err) {
   study st = {.s = s};
   files out = {.csv = {.stream = NULL}};
+  signals_catch();
   msr_status status = open_files(s, &out, err);
   if (status == MSR_OK) status = study_run(&st, s, scene, err);
   if (status == MSR_OK) status = finish(&st, &out, err);
   abandon_files(&out);
   study_free(&st);
+  signals_end_by_pipe();
   return status;
 }
 

@@ -40,8 +40,11 @@ static void print_title(FILE *out, const study *st) {
   const msr_accuracy_figures *f = &st->figures;
   if (inputs_find(st->s, &in, &err) != MSR_OK) in.picture = st->s->file[0];
   const char *const slash = strrchr(in.picture, '/');
-  snprintf(text, sizeof text, "%s: %zu masses, T = %.6g s", slash ? slash + 1 : in.picture,
-           f->masses, f->horizon);
+  const int n = snprintf(text, sizeof text, "%s: %zu masses, T = %.6g s",
+                         slash ? slash + 1 : in.picture, f->masses, f->horizon);
+  if (f->horizon < f->until * (1 - 1e-9) && n < (int)sizeof text) {
+    snprintf(text + n, sizeof text - (size_t)n, " of %.6g s", f->until);
+  }
   fputs("set title ", out);
   print_string(out, text);
   fputs(" noenhanced font ',13'\n", out);

@@ -14,6 +14,13 @@ static void hold_standard_streams(void) {
   if (fd > STDERR_FILENO) close(fd);
 }
 
+/* What a command prints goes out at its end, in one piece: then there is a reason to tell if it
+ * fails. */
+static void hold_output(void) {
+  static char buffer[1 << 18];
+  setvbuf(stdout, buffer, _IOFBF, sizeof buffer);
+}
+
 static msr_status print_help(const settings *s, msr_error *err) {
   if (s->version) {
     help_print_version(stdout);
@@ -35,6 +42,7 @@ int main(int argc, char **argv) {
   settings s;
   msr_error err = {MSR_OK, ""};
   hold_standard_streams();
+  hold_output();
   if (argc < 2) {
     help_print(stderr);
     return 2;

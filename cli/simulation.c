@@ -78,8 +78,7 @@ static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **
   msr_status status = chooses ? study_choose(s, scene, &choice, err) : MSR_OK;
   if (status == MSR_OK) status = msr_plan_create(scene, &choice.options, plan, err);
   if (status != MSR_OK) return status;
-  const msr_plan_figures figures = msr_plan_describe(*plan);
-  if (chooses) study_tell_choice(s, &choice, &figures);
+  if (chooses) study_tell_choice(s, &choice);
   for (size_t i = 0; (text = msr_plan_warning(*plan, i)); i++) tell(s, "note", text);
   return MSR_OK;
 }

@@ -7,7 +7,7 @@
 #include "status_line.h"
 #include "texts.h"
 
-#include <string.h>
+#include <stdlib.h>
 
 static msr_status follow(void *data, const msr_accuracy_progress *progress) {
   if (signals_caught()) return MSR_EINTR;
@@ -17,15 +17,34 @@ static msr_status follow(void *data, const msr_accuracy_progress *progress) {
   return MSR_OK;
 }
 
-/* What only a plan knows of the scene. */
-static msr_status look(study *st, const msr_scene *scene, msr_error *err) {
+/* What only a plan knows. */
+static msr_status look(const msr_scene *scene, const msr_integrator *integrator, bool *contacts,
+                       msr_plan_figures *figures, msr_error *err) {
+  const msr_plan_options options = {.integrator = integrator, .substeps = 1};
   msr_plan *plan = NULL;
-  const msr_status status = msr_plan_create(scene, NULL, &plan, err);
+  const msr_status status = msr_plan_create(scene, &options, &plan, err);
   if (status != MSR_OK) return status;
-  st->plan = msr_plan_describe(plan);
-  st->contacts = simulation_contacts(plan);
+  *figures = msr_plan_describe(plan);
+  *contacts = simulation_contacts(plan);
   msr_plan_free(plan);
   return MSR_OK;
+}
+
+/* A run that goes on where the study ended may explode there. */
+static msr_status look_for_risks(study *st, const msr_scene *scene, msr_error *err) {
+  msr_plan_figures plan = {.dt = 0};
+  msr_status status = look(scene, NULL, &st->contacts, &plan, err);
+  st->risky = calloc(st->n + 1, sizeof *st->risky);
+  if (!st->risky) return fail(err, MSR_ENOMEM, "out of memory for the table");
+  if (st->figures.horizon >= plan.dt * (double)plan.iterations * (1 - 1e-9)) return status;
+  for (size_t i = 0; i < st->n && status == MSR_OK; i++) {
+    const msr_accuracy_point *p = &st->point[i];
+    if (plan.integrator != p->integrator) {
+      status = look(scene, p->integrator, &st->contacts, &plan, err);
+    }
+    st->risky[i] = p->stable && plan.dt / (double)p->substeps > plan.stable_step;
+  }
+  return status;
 }
 
 static msr_status interrupted(msr_error *err) {
@@ -41,20 +60,20 @@ msr_status study_run(study *st, const settings *s, const msr_scene *scene, msr_e
                                         .budget = s->budget,
                                         .poll = follow,
                                         .data = &line};
-  msr_status status = look(st, scene, err);
-  if (status != MSR_OK) return status;
   status_line_start(&line, s);
-  signals_catch();
-  status = msr_accuracy_study(scene, &options, &st->result, err);
+  const msr_status status = msr_accuracy_study(scene, &options, &st->result, err);
   status_line_end(&line);
   if (status == MSR_EINTR) return interrupted(err);
   if (status != MSR_OK) return status;
   st->figures = msr_accuracy_describe(st->result);
   st->point = msr_accuracy_points(st->result, &st->n);
-  return st->n == 0 && signals_caught() ? interrupted(err) : MSR_OK;
+  return st->n == 0 && signals_caught() ? interrupted(err) : look_for_risks(st, scene, err);
 }
 
-void study_free(study *st) { msr_accuracy_free(st->result); }
+void study_free(study *st) {
+  msr_accuracy_free(st->result);
+  free(st->risky);
+}
 
 msr_status study_choose(const settings *s, const msr_scene *scene, msr_accuracy_choice *choice,
                         msr_error *err) {
@@ -68,17 +87,12 @@ msr_status study_choose(const settings *s, const msr_scene *scene, msr_accuracy_
   return fail(err, status, "interrupted while it chose for --accuracy");
 }
 
-void study_tell_choice(const settings *s, const msr_accuracy_choice *choice,
-                       const msr_plan_figures *plan) {
-  char text[MSR_MESSAGE_SIZE];
-  const double end = plan->dt * (double)plan->iterations;
-  const bool whole = choice->horizon >= end * (1 - 1e-9);
+void study_tell_choice(const settings *s, const msr_accuracy_choice *choice) {
+  char text[2 * MSR_MESSAGE_SIZE];
   const bool brief = choice->seconds < 1;
-  snprintf(text, sizeof text,
-           "--accuracy %s is%s: largest error about %.2g px up to %.6g s%s, in about %.2g %ss",
-           number_exact(s->accuracy).text, method_options(&choice->options).text, choice->error,
-           whole ? end : choice->horizon, whole ? "" : ", beyond which none can be promised",
+  snprintf(text, sizeof text, "--accuracy %s: %s", number_exact(s->accuracy).text, choice->reason);
+  tell(s, "note", text);
+  snprintf(text, sizeof text, "that is%s, in about %.3g %ss", method_options(&choice->options).text,
            choice->seconds * (brief ? 1000 : 1), brief ? "m" : "");
   tell(s, "note", text);
-  tell(s, "note", choice->reason);
 }

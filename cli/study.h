@@ -10,12 +10,12 @@ typedef struct study {
   msr_accuracy_figures figures;
   const msr_accuracy_point *point; /* [n] */
   size_t n;
-  msr_plan_figures plan; /* of the scene */
-  bool contacts;         /* something may be hit */
+  bool contacts; /* something may be hit: impacts were located */
+  bool *risky;   /* [n]: stable so far, at a step that may explode in the rest of the scene */
 } study;
 
-/* Studies the scene. After a signal it holds what was measured so far. What msr_accuracy_study
- * returns. */
+/* Studies the scene; signals must be caught already. After a signal it holds what was measured so
+ * far. What msr_accuracy_study returns. */
 msr_status study_run(study *st, const settings *s, const msr_scene *scene, msr_error *err);
 
 void study_free(study *st);
@@ -24,8 +24,7 @@ void study_free(study *st);
 msr_status study_choose(const settings *s, const msr_scene *scene, msr_accuracy_choice *choice,
                         msr_error *err);
 
-/* Tells the user what was chosen for a run of this plan, and why. */
-void study_tell_choice(const settings *s, const msr_accuracy_choice *choice,
-                       const msr_plan_figures *plan);
+/* Tells the user what was chosen, and why. */
+void study_tell_choice(const settings *s, const msr_accuracy_choice *choice);
 
 #endif

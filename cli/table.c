@@ -39,8 +39,9 @@ static void print_truth(FILE *out, const msr_accuracy_figures *f) {
 static void print_time(FILE *out, const study *st) {
   const msr_accuracy_figures *f = &st->figures;
   const bool all = f->horizon >= f->until * (1 - 1e-9);
-  fprintf(out, "time        %.6g s, compared at %" PRIu64 " instants up to %.6g s%s\n", f->until,
-          f->frames, f->horizon, all ? "" : ": beyond, the reference isn't sure");
+  fprintf(out, "time        %.6g s, compared at %" PRIu64 " instant%s up to %.6g s%s\n", f->until,
+          f->frames, f->frames == 1 ? "" : "s", f->horizon,
+          all ? "" : ": beyond, the reference is not sure");
 }
 
 static void print_head(FILE *out, const study *st) {
@@ -53,14 +54,14 @@ static void print_head(FILE *out, const study *st) {
   print_truth(out, f);
   fprintf(out, "machine     %s; %s; msr %s, GSL %s\n", m.processor, m.compiler, msr_version(),
           machine_gsl());
-  fprintf(out, "study       %zu points in %s s%s\n", st->n, figure(f->seconds).text,
-          f->complete ? "" : ", not all that there are to measure");
+  fprintf(out, "study       %zu point%s in %s s%s\n", st->n, st->n == 1 ? "" : "s",
+          figure(f->seconds).text, f->complete ? "" : ", not all that there are to measure");
 }
 
 /* ---- Table */
 
 static void print_titles(FILE *out) {
-  fprintf(out, "\n  %-17s %8s %8s %9s %7s %8s %8s %8s %8s %6s\n", "METHOD", "substeps", "steps",
+  fprintf(out, "\n   %-17s %8s %8s %9s %7s %8s %8s %8s %8s %6s\n", "METHOD", "substeps", "steps",
           "forces", "ms", "rms px", "max px", "energy", "pixels %", "order");
 }
 
@@ -78,9 +79,9 @@ static cell order(double value) {
   return c;
 }
 
-static void print_point(FILE *out, const msr_accuracy_point *p) {
-  fprintf(out, "%c %-17s %8s %8" PRIu64 " %9" PRIu64 " %7s %8s", p->front ? '*' : ' ',
-          p->integrator->name, step(p).text, p->steps, p->evaluations,
+static void print_point(FILE *out, const msr_accuracy_point *p, bool risky) {
+  fprintf(out, "%c%c %-17s %8s %8" PRIu64 " %9" PRIu64 " %7s %8s", p->front ? '*' : ' ',
+          risky ? '!' : ' ', p->integrator->name, step(p).text, p->steps, p->evaluations,
           figure(1e3 * p->seconds).text, p->stable ? error(p->rms).text : "unstable");
   if (p->stable) {
     fprintf(out, " %8s %8s %8s %6s", error(p->max).text, error(p->drift).text,
@@ -89,9 +90,19 @@ static void print_point(FILE *out, const msr_accuracy_point *p) {
   fputc('\n', out);
 }
 
+static bool any_risky(const study *st) {
+  size_t i = 0;
+  while (i < st->n && !st->risky[i]) i++;
+  return i < st->n;
+}
+
 static void print_notes(FILE *out, const study *st) {
-  fputs("\n* nothing is both faster and more accurate\n"
-        "substeps: per DT, or the tolerance of a method that chooses its steps; forces: "
+  fputs("\n* nothing is both faster and more accurate\n", out);
+  if (any_risky(st)) {
+    fputs("! above the step that is stable at any stretch: the rest of the scene may explode\n",
+          out);
+  }
+  fputs("substeps: per DT, or the tolerance of a method that chooses its steps; forces: "
         "evaluations;\n"
         "ms: least of several runs; energy: its error over the largest kinetic and spring energy;\n"
         "order: of the fall from the row above",
@@ -101,18 +112,36 @@ static void print_notes(FILE *out, const study *st) {
 
 /* ---- Answer */
 
+/* As msr_accuracy_cheapest, but of a step that can be trusted to the end. NULL: there is none. */
+static const msr_accuracy_point *cheapest_to_the_end(const study *st, double target) {
+  const msr_accuracy_point *best = NULL;
+  for (size_t i = 0; i < st->n; i++) {
+    const msr_accuracy_point *p = &st->point[i];
+    const bool accurate = p->stable && p->max + st->figures.reference_error <= target;
+    if (!accurate || st->risky[i] || !isfinite(p->seconds)) continue;
+    if (!best || p->seconds < best->seconds) best = p;
+  }
+  return best;
+}
+
+static void print_choice(FILE *out, const study *st, const msr_accuracy_point *p) {
+  msr_plan_options options = method_of(p);
+  options.impacts = st->contacts ? MSR_IMPACTS_LOCATED : MSR_IMPACTS_KEPT;
+  fprintf(out, ": %s, %s ms: ", method_name(&options).text, figure(1e3 * p->seconds).text);
+  command_line_print_run(out, st->s, &options);
+  fputc('\n', out);
+}
+
 static bool print_cheapest(FILE *out, const study *st, double target) {
-  const msr_accuracy_point *p = msr_accuracy_cheapest(st->result, target);
+  const msr_accuracy_point *to_the_end = cheapest_to_the_end(st, target);
+  const msr_accuracy_point *p = to_the_end ? to_the_end : msr_accuracy_cheapest(st->result, target);
   if (!p) {
     fprintf(out, "nothing measured is within %g px\n", target);
     return false;
   }
-  msr_plan_options options = method_of(p);
-  options.impacts = st->contacts ? MSR_IMPACTS_LOCATED : MSR_IMPACTS_KEPT;
-  fprintf(out, "cheapest for %g px: %s, %s ms: ", target, method_name(&options).text,
-          figure(1e3 * p->seconds).text);
-  command_line_print_run(out, st->s, &options);
-  fputc('\n', out);
+  fprintf(out, "cheapest for %g px", target);
+  if (!to_the_end) fprintf(out, " up to %.6g s", st->figures.horizon);
+  print_choice(out, st, p);
   return true;
 }
 
@@ -127,7 +156,7 @@ static void print_answer(FILE *out, const study *st) {
 void table_print(FILE *out, const study *st) {
   print_head(out, st);
   print_titles(out);
-  for (size_t i = 0; i < st->n; i++) print_point(out, &st->point[i]);
+  for (size_t i = 0; i < st->n; i++) print_point(out, &st->point[i], st->risky[i]);
   print_notes(out, st);
   print_answer(out, st);
 }

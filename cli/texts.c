@@ -14,9 +14,9 @@ number number_exact(double value) {
 
 method method_name(const msr_plan_options *options) {
   method m;
-  const int n = snprintf(m.text, sizeof m.text, "%s, %" PRIu64 " substep%s",
-                         options->integrator->name, options->substeps,
-                         options->substeps == 1 ? "" : "s");
+  const int n =
+      snprintf(m.text, sizeof m.text, "%s, %" PRIu64 " substep%s", options->integrator->name,
+               options->substeps, options->substeps == 1 ? "" : "s");
   if (options->integrator->adaptive) {
     snprintf(m.text + n, sizeof m.text - (size_t)n, ", tolerance %s",
              number_exact(options->atol).text);

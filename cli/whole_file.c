@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { SUFFIX = 48 };
+enum { NAME_SIZE = 48 };
 
 static msr_status cannot_write(const char *path, msr_error *err) {
   char reason[128] = "unknown error";
@@ -34,13 +34,16 @@ static void dispose(whole_file *file) {
 /* Not mkstemp's private file: this one gets what the umask leaves of 0666, or the permissions of
  * the one that it will replace. */
 static int open_temporary(whole_file *file, mode_t mode) {
-  const size_t size = strlen(file->target) + SUFFIX;
+  const char *const slash = strrchr(file->target, '/');
+  const int directory = slash ? (int)(slash + 1 - file->target) : 0;
+  const size_t size = (size_t)directory + NAME_SIZE;
   int fd = -1;
   file->temporary = malloc(size);
   if (!file->temporary) return -1;
   errno = EEXIST;
   for (unsigned i = 0; fd < 0 && errno == EEXIST; i++) {
-    snprintf(file->temporary, size, "%s.msr-%ld-%u.tmp", file->target, (long)getpid(), i);
+    snprintf(file->temporary, size, "%.*s.msr-%ld-%u.tmp", directory, file->target, (long)getpid(),
+             i);
     fd = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   }
   if (fd >= 0 && mode) (void)fchmod(fd, mode & 0777);
