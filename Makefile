@@ -48,13 +48,14 @@ TEST_SRC := $(wildcard tests/test_*.c)
 FUZZ_SRC := $(wildcard tests/fuzz/fuzz_*.c)
 EX_SRC   := $(wildcard examples/*.c)
 BITS_SRC := $(wildcard tests/bits/*.c)
-SOURCES  := $(LIB_SRC) $(CLI_SRC) $(TEST_SRC) $(FUZZ_SRC) $(BITS_SRC) $(EX_SRC)
-HEADERS  := $(wildcard include/*.h libmsr/*/*.h cli/*.h tests/*.h tests/fuzz/*.h)
+BENCH_SRC := $(wildcard tests/bench/*.c tests/bench/*.cc)
+SOURCES  := $(LIB_SRC) $(CLI_SRC) $(TEST_SRC) $(FUZZ_SRC) $(BITS_SRC) $(BENCH_SRC) $(EX_SRC)
+HEADERS  := $(wildcard include/*.h libmsr/*/*.h cli/*.h tests/*.h tests/fuzz/*.h tests/bench/*.h)
 DOCS     := $(wildcard README.md LICENSE CHANGELOG.md docs/*.md docs/images/*.png include/*.h \
              examples/*.md examples/*.c examples/scenes/*)
 MAN      := $(wildcard docs/*.1)
 
-object    = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
+object    = $(addprefix $(BUILD)/obj/,$(addsuffix .o,$(basename $(1))))
 LIB_OBJ   = $(call object,$(LIB_SRC))
 SHARED    = $(BUILD)/libmsr.so.$(VERSION)
 LIBS      = libmsr.a $(notdir $(SHARED)) libmsr.so.$(MAJOR) libmsr.so
@@ -212,6 +213,31 @@ run-fuzzers: $(FUZZERS)
 	    -artifact_prefix=$(BUILD)/$$fuzzer- $(BUILD)/corpus/$$fuzzer || exit; \
 	done
 
+# ---- Benchmarks ----------------------------------------------------------------------------------
+
+# One object is the right-hand side that Python loads, with those of the problem.
+BENCH     = $(BUILD)/bench/accuracy
+BENCH_RHS = $(BUILD)/bench/scipy_rhs.so
+BENCH_OBJ = $(filter-out %/scipy_rhs.o,$(call object,$(BENCH_SRC)))
+RHS_OBJ   = $(call object,tests/bench/scipy_rhs.c tests/bench/problem.c)
+SUNDIALS_LIBS = -lsundials_arkode -lsundials_cvode -lsundials_nvecserial -lsundials_generic
+
+$(BUILD)/obj/%.o: %.cc $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(call show,CXX)$(CXX) -std=c++17 -Iinclude $(WARNINGS) $(CFLAGS) $(ARITHMETIC) -MMD -MP -c $< -o $@
+
+$(BENCH): $(BENCH_OBJ) $(BUILD)/libmsr.a
+	@mkdir -p $(@D)
+	$(call show,LINK)$(CXX) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(SUNDIALS_LIBS) $(GSL_LIBS)
+
+$(BENCH_RHS): $(RHS_OBJ) $(BUILD)/libmsr.a
+	@mkdir -p $(@D)
+	$(call show,LINK)$(LINK) -shared -o $@ $^ $(GSL_LIBS)
+
+## bench-accuracy: accuracy against time, beside other libraries; some minutes
+bench-accuracy: $(BENCH) $(BENCH_RHS)
+	@$(BENCH) tests/bench/scipy_peer.py $(BENCH_RHS)
+
 # ---- Installing ----------------------------------------------------------------------------------
 
 ## install: to PREFIX=/usr/local, under DESTDIR if given
@@ -245,7 +271,7 @@ help:
 
 .PHONY: all examples everything deps demo test check check-gcc check-clang check-san \
         check-valgrind check-tidy check-cppcheck check-format format coverage fuzz run-fuzzers \
-        install uninstall clean help
+        bench-accuracy install uninstall clean help
 FORCE:
 .DELETE_ON_ERROR:
--include $(patsubst %.c,$(BUILD)/obj/%.d,$(SOURCES))
+-include $(patsubst %.o,%.d,$(call object,$(SOURCES)))

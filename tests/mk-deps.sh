@@ -1,12 +1,13 @@
 #!/bin/sh
-# mk-deps.sh - installs what the goals of `make deps GOALS` need and isn't there; all if no goal is
-# given. It needs neither network nor root when nothing is missing. Debian and Ubuntu only; on
+# mk-deps.sh - installs what the goals of `make deps GOALS` need and isn't there; if no goal is given
+# all but the benchmark's peers. It needs neither network nor root when nothing is missing. Debian and Ubuntu only; on
 # other systems it says what to install.
 set -eu
 cc=${CC:-cc}
 
 has() { command -v "$1"; }
 header() { printf '#include <%s>\n' "$@" | $cc -E -; }
+scipy() { python3 -c 'import scipy' || /usr/bin/python3 -c 'import scipy'; }
 numpy() { python3 -c 'import numpy' || /usr/bin/python3 -c 'import numpy'; }
 fuzzer() { echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' |
   clang -fsanitize=fuzzer,address -xc - -o /dev/null; }
@@ -31,6 +32,10 @@ check    | has clang-tidy                      | clang-tidy      | clang-tools-e
 check    | has clang-format                    | clang-format    | clang-tools-extra     | clang        | clang-format
 check    | has cppcheck                        | cppcheck        | cppcheck              | cppcheck     | cppcheck
 coverage | has gcovr                           | gcovr           | gcovr                 | gcovr        | gcovr
+bench    | has g++                             | g++             | gcc-c++               | gcc          | gcc
+bench    | header cvode/cvode.h                | libsundials-dev | sundials-devel        | sundials     | sundials
+bench    | header boost/version.hpp            | libboost-dev    | boost-devel           | boost        | boost
+bench    | scipy                               | python3-scipy   | python3-scipy         | python-scipy | scipy
 fuzz     | fuzzer                              | libclang-rt-dev | compiler-rt           | compiler-rt  | llvm
 '
 
@@ -39,6 +44,7 @@ for goal in "${@:-everything}"; do
   case $goal in
   all | demo | examples | install | uninstall | clean | help) ;;
   test) groups="$groups test" ;;
+  bench-accuracy) groups="$groups bench" ;;
   check | coverage | fuzz) groups="$groups test $goal" ;;
   *) groups='build test check coverage fuzz' ;;
   esac

@@ -1,0 +1,158 @@
+/* measure.c - see measure.h. A scan in factors of sqrt(2) of the number of steps, or sqrt(10) of
+ * the tolerance, finds the first knob that reaches an error; bisection makes it as large as can be.
+ */
+#include "measure.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+/* ---- Knobs */
+
+static double run_once(const table *t, const method *m, double knob, double *seconds) {
+  problem *p = t->p;
+  double *z = need(2 * p->n, sizeof *z), error = (double)INFINITY;
+  void *object = m->open(m, p, knob);
+  const double begin = clock_now();
+  p->deadline = begin + p->limit;
+  if (object && m->run(object, z)) error = largest_distance(z, t->truth);
+  *seconds = clock_now() - begin;
+  if (object) m->close(object);
+  free(z);
+  return error;
+}
+
+/* A scan of one method's knobs, and where it has come to. */
+typedef struct scan {
+  const table *t;
+  const method *m;
+  int i;
+  double fails;          /* the last knob that failed; 0: none */
+  point at;              /* the last one tried */
+  double seconds, total; /* that it took, that all took */
+  int too_long;          /* runs that were */
+} scan;
+
+static double knob_at(const scan *s) {
+  if (s->m->by_tolerance) return s->t->loosest * pow(10, -s->i / 2.0);
+  return ceil(4 * pow(2, s->i / 2.0));
+}
+
+static void try_knob(scan *s, double knob) {
+  s->at.knob = knob;
+  s->at.error = run_once(s->t, s->m, knob, &s->seconds);
+  s->total += s->seconds;
+  s->too_long += s->seconds >= s->t->p->limit;
+}
+
+/* More steps take longer; what a tolerance takes isn't that regular. */
+static bool is_over(const scan *s) {
+  const double limit = s->t->p->limit;
+  if (!s->m->by_tolerance) return 1.5 * s->seconds > limit;
+  return s->too_long > 1 || s->total > 3 * limit || s->at.knob < 1e-15;
+}
+
+static point refine(const scan *s, double error) {
+  point found = s->at;
+  double fails = s->fails, seconds;
+  for (int i = 0; i < 3 && fails > 0; i++) {
+    const double middle = sqrt(fails * found.knob);
+    const double knob = s->m->by_tolerance ? middle : floor(middle);
+    if (knob == fails || knob == found.knob) break;
+    const double e = run_once(s->t, s->m, knob, &seconds);
+    if (e <= error)
+      found.knob = knob, found.error = e;
+    else
+      fails = knob;
+  }
+  found.reached = true;
+  return found;
+}
+
+static void search(table *t, size_t k) {
+  scan s = {.t = t, .m = &t->method[k]};
+  point found = {.error = (double)INFINITY};
+  try_knob(&s, knob_at(&s));
+  for (size_t e = 0; e < t->n_errors; e++) {
+    while (!(s.at.error <= t->error[e])) {
+      if (is_over(&s)) return;
+      s.fails = s.at.knob;
+      s.i++;
+      try_knob(&s, knob_at(&s));
+    }
+    if (!(found.error <= t->error[e])) found = refine(&s, t->error[e]);
+    t->point[k][e] = found;
+  }
+}
+
+void table_search(table *t) {
+  for (size_t k = 0; k < t->n_methods; k++) search(t, k);
+}
+
+/* ---- Times */
+
+/* [s] of this process's own, so that others on the machine don't count. */
+static double processor_now(const method *m) {
+  struct timespec now;
+  if (m->elsewhere) return clock_now();
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Once, or for a millisecond. */
+static void time_point(const table *t, const method *m, point *x, double *z) {
+  const double patience = 1e-3, begin = processor_now(m);
+  double now = begin;
+  do {
+    const double then = now;
+    t->p->deadline = (double)INFINITY;
+    m->run(x->object, z);
+    now = processor_now(m);
+    if (x->repeats < MOST_REPEATS) x->time[x->repeats++] = (float)(now - then);
+  } while (now - begin < patience);
+  x->spent += now - begin;
+}
+
+static int by_size(const void *a, const void *b) {
+  const float x = *(const float *)a, y = *(const float *)b;
+  return (x > y) - (x < y);
+}
+
+static void sum_up(point *x) {
+  qsort(x->time, x->repeats, sizeof *x->time, by_size);
+  x->minimum = (double)x->time[0];
+  x->median = (double)x->time[x->repeats / 2];
+}
+
+/* A round gives every point a turn, but those that have had their share. */
+static void go_round(table *t, double share, double *z) {
+  for (size_t k = 0; k < t->n_methods; k++)
+    for (size_t e = 0; e < t->n_errors; e++) {
+      point *x = &t->point[k][e];
+      if (x->reached && (x->repeats < 2 || x->spent < share)) time_point(t, &t->method[k], x, z);
+    }
+}
+
+void table_time(table *t, double share, int rounds) {
+  double *z = need(2 * t->p->n, sizeof *z);
+  for (size_t k = 0; k < t->n_methods; k++)
+    for (size_t e = 0; e < t->n_errors; e++) {
+      point *x = &t->point[k][e];
+      if (!x->reached) continue;
+      x->object = t->method[k].open(&t->method[k], t->p, x->knob);
+      x->time = need(MOST_REPEATS, sizeof *x->time);
+    }
+  for (int i = 0; i < rounds; i++) go_round(t, share, z);
+  for (size_t k = 0; k < t->n_methods; k++)
+    for (size_t e = 0; e < t->n_errors; e++)
+      if (t->point[k][e].reached) sum_up(&t->point[k][e]);
+  free(z);
+}
+
+void table_free(table *t) {
+  for (size_t k = 0; k < t->n_methods; k++)
+    for (size_t e = 0; e < t->n_errors; e++) {
+      if (t->point[k][e].reached) t->method[k].close(t->point[k][e].object);
+      free(t->point[k][e].time);
+    }
+}
