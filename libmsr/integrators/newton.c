@@ -66,11 +66,12 @@ static msr_status correct(newton *s, int k) {
   return status == MSR_OK ? system->solve(system->self, r, tolerance, s->p) : status;
 }
 
-/* Is what the next correction would be below rounding? Or has there been none smaller for a while,
- * near it? */
-static bool converged(newton *s, int k) {
-  if (s->size <= s->rounding) return true;
-  if (k > 0 && s->size * s->size <= s->rounding * s->size_before) return true;
+/* Would the next correction be below the rounding of d, as the last two go on? If that can't be
+ * reached for the rounding of q, they shrink no more, or haven't for a while. */
+static bool converged(newton *s, int k, double length) {
+  if (s->size <= DBL_EPSILON * length) return true;
+  if (k > 0 && s->size * s->size <= DBL_EPSILON * length * s->size_before) return true;
+  if (k > 0 && s->size <= s->rounding && s->size > 0.5 * s->size_before) return true;
   if (s->size < s->least) s->least = s->size, s->waited = 0;
   return ++s->waited > PATIENCE && s->least < 1e3 * s->rounding;
 }
@@ -95,13 +96,13 @@ static void swap(double **a, double **b) {
   *b = c;
 }
 
-/* From q to q0 + d, d being the displacement of q less its correction, or half of that to get out
- * of a cycle. */
+/* From q to q0 + d, d being the displacement of q less its correction, which is mixed with the one
+ * before, or halved to get out of a cycle. */
 static void move(newton *s, int k, double *d) {
   const size_t n = s->stage->system->n;
   const bool cycling = s->waited > 2 * PATIENCE;
-  const double *q0 = s->stage->q0, f = cycling ? 0.5 : 1, g = cycling ? 0 : mixing(s, k);
-  for (size_t i = 0; i < n; i++) d[i] = s->q[i] - q0[i] - f * s->p[i];
+  const double *q0 = s->stage->q0, g = cycling ? 0 : mixing(s, k);
+  for (size_t i = 0; cycling && i < n; i++) d[i] += s->p[i] / 2;
   for (size_t i = 0; g != 0 && i < n; i++)
     d[i] -= g * (s->q[i] - s->before[i] - (s->p[i] - s->p_before[i]));
   swap(&s->q, &s->before);
@@ -142,11 +143,8 @@ msr_status msri_newton(const msri_stage *stage, double *memory, void *object, do
     s.size_before = s.size;
     s.size = largest(n, s.p);
     if (!isfinite(s.size + largest(n, s.residual))) return s.size = NAN, give_up(&s, err);
-    const bool last = converged(&s, k);
-    if (last) {
-      for (size_t i = 0; i < n; i++) d[i] = s.q[i] - stage->q0[i] - s.p[i];
-      return MSR_OK;
-    }
+    for (size_t i = 0; i < n; i++) d[i] = s.q[i] - stage->q0[i] - s.p[i];
+    if (converged(&s, k, largest(n, d))) return MSR_OK;
     move(&s, k, d);
   }
   return give_up(&s, err);
