@@ -276,8 +276,9 @@ typedef struct msr_system {
   /* The mean acceleration from q0 to q1 whose work is exactly what the potentials lose (discrete
    * gradient), what has no potential taken at time t in the middle. NULL: a in the middle. */
   msr_status (*between)(void *self, double t, const double *q0, const double *q1, double *a);
-  /* Prepares solve for A = 1 - c da/dq at (t, q). */
-  msr_status (*linearise)(void *self, double t, const double *q, double c);
+  /* Prepares solve for A = 1 - c da/dq at (t, q1) or, if q0 isn't NULL, with twice the derivative by
+   * q1 of what between gives in the place of da/dq. */
+  msr_status (*linearise)(void *self, double t, const double *q0, const double *from, const double *q1, double c);
   /* x[n] with |A x - r| <= tolerance |r|; da/dq may be what is near it and makes A positive.
    * Both NULL: implicit methods take differences of a. */
   msr_status (*solve)(void *self, const double *r, double tolerance, double *x);
@@ -361,6 +362,10 @@ MSR_API extern const msr_integrator msr_integrator_rkf45; /* adaptive, as those 
 MSR_API extern const msr_integrator msr_integrator_rkck;
 MSR_API extern const msr_integrator msr_integrator_rk8pd;
 MSR_API extern const msr_integrator msr_integrator_msadams;
+MSR_API extern const msr_integrator msr_integrator_backward_euler;
+MSR_API extern const msr_integrator msr_integrator_implicit_midpoint;
+MSR_API extern const msr_integrator msr_integrator_sdirk2;
+MSR_API extern const msr_integrator msr_integrator_energy_momentum;
 
 /* All of the above, then NULL. */
 MSR_API extern const msr_integrator *const msr_integrators[];

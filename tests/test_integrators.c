@@ -94,7 +94,10 @@ static double plain_error(const msr_integrator *integrator, const struct plain *
   p->solution(0, z);
   for (int t = 0; t < 4; t++) {
     const double h = 1 / (double)steps;
-    must(msr_integrate(integrator, &system, t, h, steps, z, z + system.n, &why));
+    const msr_status status =
+        msr_integrate(integrator, &system, t, h, steps, z, z + system.n, &why);
+    if (status == MSR_EUNSTABLE && integrator->implicit) return INFINITE; /* too large a step */
+    must(status);
     p->solution(t + 1, exact);
     most = fmax(most, distance(2 * system.n, z, exact));
   }
@@ -291,6 +294,14 @@ static void check_return(const msr_integrator *integrator, uint64_t steps, doubl
     fail_msg("%s comes back with %g", integrator->name, error);
 }
 
+/* A step may be too large for its equations to have a solution, where nothing is to be shown. */
+static void go_plainly(const msr_integrator *integrator, const msr_system *system, uint64_t steps,
+                       double *z) {
+  const msr_status status =
+      msr_integrate(integrator, system, 0, 0.1, steps, z, z + system->n, &why);
+  if (status != MSR_EUNSTABLE || !integrator->implicit || integrator->reversible) must(status);
+}
+
 static void check_plain_return(const msr_integrator *integrator) {
   const uint64_t steps = 50;
   for (size_t p = 0; p < LENGTH(plains); p++) {
@@ -301,7 +312,7 @@ static void check_plain_return(const msr_integrator *integrator) {
     plains[p].solution(0, start);
     memcpy(z, start, sizeof z);
     for (int way = 0; way < 2; way++) {
-      must(msr_integrate(integrator, &system, 0, 0.1, steps, z, z + system.n, &why));
+      go_plainly(integrator, &system, steps, z);
       flip(system.n, z + system.n);
     }
     check_return(integrator, steps, distance(2 * system.n, z, start));
@@ -370,7 +381,8 @@ static void check_linear_area(const msr_integrator *integrator) {
   }
   const double error = area_error(J, m), rounding = 100 * DBL_EPSILON;
   if (integrator->adaptive && !integrator->symplectic) return;
-  if (integrator->symplectic ? !(error < rounding) : !(error > 1e6 * rounding))
+  const bool midpoint = integrator->conservative; /* of a quadratic: the midpoint rule is both */
+  if (integrator->symplectic || midpoint ? !(error < rounding) : !(error > 1e6 * rounding))
     fail_msg("%s: areas change by %g", integrator->name, error);
 }
 

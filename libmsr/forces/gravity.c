@@ -34,6 +34,12 @@ static msr_status add(const void *self, void *scratch, const msr_view *s, double
   return MSR_OK;
 }
 
+static msr_status between(const void *self, void *scratch, const msr_view *s, const msr_view *to,
+                          double *fx, double *fy) {
+  (void)to;
+  return add(self, scratch, s, fx, fy);
+}
+
 static double energy(const void *self, const msr_view *s) {
   double sum = 0;
   for (size_t i = 0; i < s->n; i++) sum += msr_view_mass(s, i) * s->y[i];
@@ -51,4 +57,5 @@ const msr_force msr_force_gravity = {
     .describe = describe,
     .add = add,
     .energy = energy,
+    .between = between,
 };

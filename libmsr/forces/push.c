@@ -50,6 +50,12 @@ static msr_status add(const void *self, void *scratch, const msr_view *s, double
   return MSR_OK;
 }
 
+static msr_status between(const void *self, void *scratch, const msr_view *s, const msr_view *to,
+                          double *fx, double *fy) {
+  (void)to;
+  return add(self, scratch, s, fx, fy);
+}
+
 static double energy(const void *self, const msr_view *s) {
   const push *p = self;
   const size_t i = p->of.mass;
@@ -68,4 +74,5 @@ const msr_force msr_force_push = {
     .release = free,
     .add = add,
     .energy = energy,
+    .between = between,
 };

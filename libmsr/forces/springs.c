@@ -6,22 +6,14 @@
  * the machine that they run on decides between them, not the one that compiled them. */
 #include "forces/springs.h"
 
-#include "base/machine.h"
 #include "base/number.h"
 #include "forces/mesh.h"
 
 #include <math.h>
 
-enum { BLOCK = 256 };
-
-/* Where springs begin and end: [count] each. */
-typedef struct ends {
-  const double *xi, *yi, *xj, *yj;
-} ends;
-
 /* Forces on the beginnings of `count` springs; stride is 0 or 1. A spring without length divides by
  * infinity: a choice of quotients, not of divisors, would keep gcc from vectorising the loop. */
-MSRI_INLINE void tensions(size_t count, const ends *e, const double *k, const double *L,
+MSRI_INLINE void tensions(size_t count, const msri_ends *e, const double *k, const double *L,
                           size_t stride, double *restrict fx, double *restrict fy) {
   const double *xi = e->xi, *yi = e->yi, *xj = e->xj, *yj = e->yj;
   for (size_t s = 0; s < count; s++) {
@@ -35,25 +27,22 @@ MSRI_INLINE void tensions(size_t count, const ends *e, const double *k, const do
 
 MSRI_INLINE void add_block(const msr_view *s, const msr_run_of_springs *run, size_t from,
                            size_t count, double *fx, double *fy) {
-  double bx[BLOCK], by[BLOCK];
+  double bx[MSRI_SPRINGS_BLOCK], by[MSRI_SPRINGS_BLOCK];
   const size_t i = run->first + from, j = i + run->offset;
-  const ends e = {s->x + i, s->y + i, s->x + j, s->y + j};
+  const msri_ends e = msri_ends_of(s, i, j);
   if (run->stride)
     tensions(count, &e, run->k + from, run->L + from, 1, bx, by);
   else
     tensions(count, &e, run->k, run->L, 0, bx, by);
-  for (size_t n = 0; n < count; n++) fx[i + n] += bx[n];
-  for (size_t n = 0; n < count; n++) fy[i + n] += by[n];
-  for (size_t n = 0; n < count; n++) fx[j + n] -= bx[n];
-  for (size_t n = 0; n < count; n++) fy[j + n] -= by[n];
+  msri_add_to_ends(count, i, j, bx, by, fx, fy);
 }
 
 MSRI_INLINE void add_runs(const msr_view *s, double *fx, double *fy) {
   for (size_t r = 0; r < s->springs->n_runs; r++) {
     const msr_run_of_springs *run = &s->springs->run[r];
-    for (size_t from = 0; from < run->count; from += BLOCK) {
+    for (size_t from = 0; from < run->count; from += MSRI_SPRINGS_BLOCK) {
       const size_t left = run->count - from;
-      add_block(s, run, from, left < BLOCK ? left : BLOCK, fx, fy);
+      add_block(s, run, from, left < MSRI_SPRINGS_BLOCK ? left : MSRI_SPRINGS_BLOCK, fx, fy);
     }
   }
 }
@@ -88,7 +77,7 @@ static const msri_springs_kernel *widest(void) {
 
 static void add_anchor(const msr_view *s, const msr_anchor *a, double *fx, double *fy) {
   double bx, by;
-  const ends e = {s->x + a->i, s->y + a->i, &a->x, &a->y};
+  const msri_ends e = msri_ends_of_anchor(s, a);
   tensions(1, &e, &a->k, &a->L, 0, &bx, &by);
   fx[a->i] += bx;
   fy[a->i] += by;
@@ -165,5 +154,6 @@ const msr_force msr_force_springs = {
     .describe = describe,
     .add = add,
     .energy = energy,
+    .between = msri_springs_between,
     .rates = rates,
 };

@@ -3,6 +3,31 @@
 #define MSRI_SPRINGS_H
 
 #include "base/base.h"
+#include "base/machine.h"
+
+enum { MSRI_SPRINGS_BLOCK = 256 };
+
+/* Where springs begin and end: [count] each. */
+typedef struct msri_ends {
+  const double *xi, *yi, *xj, *yj;
+} msri_ends;
+
+MSRI_INLINE msri_ends msri_ends_of(const msr_view *s, size_t i, size_t j) {
+  return (msri_ends){s->x + i, s->y + i, s->x + j, s->y + j};
+}
+
+MSRI_INLINE msri_ends msri_ends_of_anchor(const msr_view *s, const msr_anchor *a) {
+  return (msri_ends){s->x + a->i, s->y + a->i, &a->x, &a->y};
+}
+
+/* Adds a block of forces to masses i .. i+count-1, and takes them from masses j on. */
+MSRI_INLINE void msri_add_to_ends(size_t count, size_t i, size_t j, const double *bx,
+                                  const double *by, double *fx, double *fy) {
+  for (size_t n = 0; n < count; n++) fx[i + n] += bx[n];
+  for (size_t n = 0; n < count; n++) fy[i + n] += by[n];
+  for (size_t n = 0; n < count; n++) fx[j + n] -= bx[n];
+  for (size_t n = 0; n < count; n++) fy[j + n] -= by[n];
+}
 
 /* The forces of all runs, compiled for vectors of some width: the same bits by each of them. */
 typedef struct msri_springs_kernel {
@@ -13,5 +38,9 @@ typedef struct msri_springs_kernel {
 
 /* Widest first; the last runs anywhere. */
 extern const msri_springs_kernel msri_springs_kernels[];
+
+/* msr_force's between. */
+msr_status msri_springs_between(const void *self, void *scratch, const msr_view *s,
+                                const msr_view *to, double *fx, double *fy);
 
 #endif

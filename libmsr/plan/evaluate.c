@@ -32,7 +32,7 @@ msr_status msri_state_add_forces(msr_state *state, const msr_view *view,
 }
 
 /* f[2n] / m, times the inverse: divisions would take half as long as the springs of a block. */
-static void divide_by_mass(const msr_view *s, double *f) {
+void msri_state_divide_by_mass(const msr_view *s, double *f) {
   if (s->m_stride == 0) {
     msri_scale(2 * s->n, 1 / s->m[0], f);
     return;
@@ -51,7 +51,7 @@ static msr_status acceleration(void *self, double t, const double *q, const doub
   state->evaluations++;
   const msr_status status =
       msri_state_add_forces(state, &view, v ? any : without_velocity, true, a, a + view.n);
-  divide_by_mass(&view, a);
+  msri_state_divide_by_mass(&view, a);
   return status;
 }
 
@@ -67,7 +67,7 @@ static msr_status midpoint(msr_state *state, const msri_term *term, const msr_vi
     memset(f, 0, 2 * n * sizeof *f);
     const msr_status status = add_force(state, term, &at, f, f + n);
     if (status != MSR_OK) return status;
-    divide_by_mass(&at, f);
+    msri_state_divide_by_mass(&at, f);
     const double step = half ? h / 2 : h;
     for (size_t i = 0; i < 2 * n; i++) u[i] = v[i] + step * f[i];
   }
@@ -130,7 +130,7 @@ static bool damps(const msr_plan *plan) {
 
 msr_system msri_state_system(msr_state *state) {
   const bool touches = state->plan->contact.drift != NULL;
-  return (msr_system){
+  msr_system system = {
       .n = 2 * state->plan->figures.masses,
       .self = state,
       .acceleration = acceleration,
@@ -140,6 +140,8 @@ msr_system msri_state_system(msr_state *state) {
       .atol = state->plan->figures.atol,
       .rtol = state->plan->figures.rtol,
   };
+  if (state->plan->graph) msri_state_solve_implicitly(&system);
+  return system;
 }
 
 msr_status msr_state_forces(msr_state *state, double *fx, double *fy, msr_error *err) {

@@ -80,6 +80,7 @@ static msr_status add_term(msr_plan *plan, const msr_force *force, const void *p
   plan->effect[plan->n_effects - 1].on = true;
   plan->scratch_bytes += (force->scratch_size + 15) / 16 * 16;
   plan->midpoint |= force->uses_velocity && !force->flow;
+  plan->middle |= plan->figures.integrator->implicit && !force->uses_velocity && !force->between;
   plan->driven |= msri_force_drives(force);
   msri_format(reason, MSR_MESSAGE_SIZE, "asked for");
   if (force->describe) force->describe(term->params, start, reason, MSR_MESSAGE_SIZE);
@@ -156,12 +157,12 @@ static void count_memory(msr_plan *plan) {
   const msri_mesh *mesh = &plan->mesh;
   msr_plan_figures *f = &plan->figures;
   const size_t added = f->masses - plan->n_picture;
-  f->plan_bytes = sizeof *plan + 3 * f->width * f->height + added * sizeof *plan->mass +
-                  (plan->m ? f->masses * sizeof *plan->m : 0) +
-                  mesh->run_capacity * sizeof *mesh->run +
-                  mesh->n_added * (sizeof *mesh->k + sizeof *mesh->L) +
-                  mesh->anchor_capacity * sizeof *mesh->anchor +
-                  (plan->contact.drift ? f->width * f->height / 8 : 0);
+  f->plan_bytes =
+      sizeof *plan + 3 * f->width * f->height + added * sizeof *plan->mass +
+      (plan->m ? f->masses * sizeof *plan->m : 0) + mesh->run_capacity * sizeof *mesh->run +
+      mesh->n_added * (sizeof *mesh->k + sizeof *mesh->L) +
+      mesh->anchor_capacity * sizeof *mesh->anchor + (plan->graph ? plan->graph->bytes : 0) +
+      (plan->contact.drift ? f->width * f->height / 8 : 0);
   f->state_bytes = msri_state_bytes(plan);
 }
 
@@ -170,6 +171,9 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, uint64_t subst
   msr_status status = scene->picture ? copy_picture(plan, scene->picture, err) : MSR_OK;
   if (status == MSR_OK) status = copy_masses(plan, scene, err);
   if (status == MSR_OK) status = msri_mesh_create(scene, &plan->mesh, err);
+  if (status != MSR_OK) return status;
+  if (plan->figures.integrator->implicit)
+    status = msri_graph_create(plan->figures.masses, &plan->mesh.springs, &plan->graph, err);
   if (status != MSR_OK) return status;
   plan->figures.springs = plan->mesh.springs.n;
   plan->figures.anchors = plan->mesh.springs.n_anchors;
@@ -226,6 +230,7 @@ void msr_plan_free(msr_plan *plan) {
     free(plan->term[i].params);
   }
   if (plan->contact.release) plan->contact.release(plan->contact.self);
+  free(plan->graph);
   msri_mesh_clear(&plan->mesh);
   msri_notes_clear(&plan->notes);
   msr_picture_free(plan->picture);

@@ -6,6 +6,7 @@
 #include "base/notes.h"
 #include "contacts/contact.h"
 #include "scene/scene.h"
+#include "solvers/graph.h"
 
 /* A force that the scene calls for, compiled. */
 typedef struct msri_term {
@@ -41,6 +42,8 @@ struct msr_plan {
   size_t scratch_bytes; /* of all terms */
   bool midpoint;        /* a force on v has no flow of its own: states have room for one */
   bool driven;          /* a force drives: states follow its work */
+  bool middle;          /* a force without between() acts in the middle of a step: likewise */
+  msri_graph *graph;    /* of the springs, if the integrator is implicit */
   msri_contact contact; /* move NULL: nothing is ever in the way */
   msr_effect *effect;   /* [n_effects]; the first n_terms are the terms */
   char (*reason)[MSR_MESSAGE_SIZE]; /* of the effects */

@@ -67,6 +67,19 @@ static double safe_share(const msr_plan *plan) {
   return crushed > 1 ? 0.5 / msri_min(crushed, 8) : 0.5;
 }
 
+/* Verlet's limit. */
+static const double resolved = 2;
+
+/* Where any step is stable, two things still call for steps that follow every spring: supports,
+ * which stop a mass while its neighbours go on for the rest of the step, and methods that keep
+ * phase-space area, whose energy grows when long steps meet springs that turn and buckle. */
+static double safe_step(const msr_plan *plan) {
+  const msr_plan_figures *f = &plan->figures;
+  const bool follows = plan->contact.drift || f->integrator->symplectic;
+  const bool any = isinf(f->stable_step) && f->omega > 0 && follows;
+  return safe_share(plan) * (any ? resolved / f->omega : f->stable_step);
+}
+
 /* The fewest equal steps of dt that are safe. */
 static double fewest(const msr_plan_figures *f) {
   const double rounding = 1e-12;
@@ -84,6 +97,12 @@ static msr_status explain_no_step(msr_plan *plan, msr_error *err) {
 static msr_status explain(msr_plan *plan, bool automatic, msr_error *err) {
   const msr_plan_figures *f = &plan->figures;
   if (f->stable_step == 0) return explain_no_step(plan, err);
+  if (automatic && f->substeps > 1 && isinf(f->stable_step))
+    return msri_notes_add(
+        &plan->notes, err,
+        "%llu substeps of %.4g s per iteration: steps up to %.4g s are safe here, "
+        "though %s is stable for any where springs neither buckle nor hit supports",
+        (unsigned long long)f->substeps, f->h, f->safe_step, f->integrator->name);
   if (automatic && f->substeps > 1)
     return msri_notes_add(&plan->notes, err,
                           "%llu substeps of %.4g s per iteration: steps up to %.4g s are safe here "
@@ -105,13 +124,15 @@ msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t
   const msr_status status = bound_rates(plan, start, &damping, err);
   if (status != MSR_OK) return status;
   f->stable_step = stable_step(f, damping);
-  f->safe_step = safe_share(plan) * f->stable_step;
+  f->safe_step = safe_step(plan);
   const double needed = f->stable_step > 0 ? fewest(f) : 1;
+  const bool any = isinf(f->stable_step);
+  const double largest = any ? f->safe_step : f->stable_step;
   if (substeps == 0 && needed > most_substeps)
     return msri_fail(err, MSR_EINPUT,
-                     "DT %g s is %g times the largest stable step, %g s; lower DT or "
-                     "TENSION_RESSORT, or raise MASSE",
-                     f->dt, f->dt / f->stable_step, f->stable_step);
+                     "DT %g s is %g times the largest %s step, %g s; lower DT or TENSION_RESSORT, "
+                     "or raise MASSE",
+                     f->dt, f->dt / largest, any ? "safe" : "stable", largest);
   f->substeps = substeps > 0 ? substeps : (uint64_t)needed;
   f->h = f->dt / (double)f->substeps;
   return explain(plan, substeps == 0, err);

@@ -11,7 +11,7 @@
 
 /* Where each array lies in the block, in bytes; `bytes` is the whole. */
 typedef struct layout {
-  size_t q, v, work, before, middle, drive, scratch, calls, bytes;
+  size_t solver, q, v, work, before, middle, between, drive, scratch, calls, bytes;
 } layout;
 
 static size_t reserve(size_t *end, size_t bytes) {
@@ -27,11 +27,16 @@ static layout lay_out(const msr_plan *plan) {
   layout l;
   size_t end = 0;
   reserve(&end, sizeof(msr_state));
+  l.solver =
+      reserve(&end, plan->graph ? msri_stiffness_bytes(plan->graph, plan->mesh.springs.n_anchors,
+                                                       plan->m != NULL)
+                                : 0);
   l.q = reserve(&end, vector);
   l.v = reserve(&end, vector);
   l.work = reserve(&end, (vectors > 0 ? vectors : 1) * vector);
   l.before = reserve(&end, msri_plan_bounces(plan) ? 2 * vector : 0);
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
+  l.between = reserve(&end, plan->middle ? 2 * vector : 0);
   l.drive = reserve(&end, plan->driven ? vector : 0);
   l.scratch = reserve(&end, plan->scratch_bytes);
   l.calls = reserve(&end, plan->n_effects * sizeof(uint64_t));
@@ -53,12 +58,17 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .work = {.vector = (void *)(block + l.work)},
       .before = (void *)(block + l.before),
       .middle = (void *)(block + l.middle),
+      .between = (void *)(block + l.between),
       .drive = (void *)(block + l.drive),
       .scratch = block + l.scratch,
       .calls = (void *)(block + l.calls),
   };
   const size_t n = plan->figures.masses;
   msri_plan_start(plan, made->q, made->q + n, made->v, made->v + n);
+  if (plan->graph) {
+    const msr_view start = msr_state_view(made);
+    made->stiffness = msri_stiffness_place(plan->graph, &start, block + l.solver);
+  }
   const msr_integrator *integrator = plan->figures.integrator;
   if (integrator->open) {
     const msr_system system = msri_state_system(made);

@@ -3,6 +3,7 @@
 #define MSRI_STATE_H
 
 #include "plan/plan.h"
+#include "solvers/stiffness.h"
 
 /* What the guard compares with: see run/guard.c. */
 typedef struct msri_guard {
@@ -22,13 +23,15 @@ struct msr_state {
   uint64_t frames;         /* of a run that went to the sinks */
   const msr_force *failed; /* the force whose status stopped the last step */
   msri_guard guard;
-  msr_workspace work; /* vector [integrator->vectors, 1 at least][2n] */
-  double *q, *v;      /* x[n], y[n]; vx[n], vy[n] */
-  double *before;     /* [4n] if the library bounces: q, v before the step */
-  double *middle;     /* [4n] if plan->midpoint: force, velocity */
-  double *drive;      /* [2n] if plan->driven: driving forces */
-  char *scratch;      /* [plan->scratch_bytes] */
-  uint64_t *calls;    /* [plan->n_effects] */
+  msr_workspace work;       /* vector [integrator->vectors, 1 at least][2n] */
+  double *q, *v;            /* x[n], y[n]; vx[n], vy[n] */
+  double *before;           /* [4n] if the library bounces: q, v before the step */
+  double *middle;           /* [4n] if plan->midpoint: force, velocity */
+  double *between;          /* [4n] if plan->middle: the middle, force */
+  double *drive;            /* [2n] if plan->driven: driving forces */
+  char *scratch;            /* [plan->scratch_bytes] */
+  uint64_t *calls;          /* [plan->n_effects] */
+  msri_stiffness stiffness; /* if plan->graph */
 };
 
 static inline double msri_state_time(const msr_state *state) {
@@ -40,6 +43,12 @@ size_t msri_state_bytes(const msr_plan *plan);
 
 /* The problem that the integrator solves for this state. */
 msr_system msri_state_system(msr_state *state);
+
+/* Completes it for implicit integrators. */
+void msri_state_solve_implicitly(msr_system *system);
+
+/* f[2n] /= m. */
+void msri_state_divide_by_mass(const msr_view *s, double *f);
 
 /* Adds the forces of the terms that `wanted` accepts to fx, fy [n]; `step`: it's for a step, and
  * counts as a call. What a force returns; then state->failed is that force. */

@@ -111,6 +111,10 @@ static void advise(const msr_plan_figures *f, bool finite, char *text, size_t si
     msri_format(text, size, "%s has no stable step here; use verlet", f->integrator->name);
   else if (f->h > f->safe_step)
     msri_format(text, size, "stable: DT %.3g, or %.10g substeps", 0.995 * f->safe_step, substeps);
+  else if (finite && isinf(f->stable_step))
+    msri_format(text, size,
+                "any step is stable, but this one follows too little: try %llu substeps",
+                4 * (unsigned long long)f->substeps);
   else if (finite)
     msri_format(text, size,
                 "the step is below the limit of stability, %.3g s: try %llu substeps, or damping",

@@ -25,5 +25,9 @@ const msr_integrator *const msr_integrators[] = {
     &msr_integrator_rkck,
     &msr_integrator_rk8pd,
     &msr_integrator_msadams,
+    &msr_integrator_backward_euler,
+    &msr_integrator_implicit_midpoint,
+    &msr_integrator_sdirk2,
+    &msr_integrator_energy_momentum,
     NULL,
 };

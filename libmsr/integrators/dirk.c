@@ -1,0 +1,125 @@
+/* dirk.c - diagonally implicit Runge-Kutta methods for q'' = a(t, q) (Hairer & Wanner, Solving
+ * Ordinary Differential Equations II, 1996, IV.6). A method is a Butcher tableau. With A = a^2 and
+ * k_i the acceleration of stage i, its displacement solves one equation,
+ *     d_i = c_i h v + h^2 (A_i1 k_1 + ... + A_ii k_i),  k_i = a(t + c_i h, q + d_i).
+ * What depends on v is advanced by its own flow, by half a step at each end (Strang 1968). */
+#include "integrators/newton.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_STAGES = 2 };
+
+typedef struct tableau {
+  int stages;
+  double a[MOST_STAGES][MOST_STAGES], b[MOST_STAGES], c[MOST_STAGES];
+} tableau;
+
+/* Of k_j in the displacement of a row of weights w[stages]: sum of w_m a_mj. */
+static double twice(const tableau *row, const double *w, int j) {
+  double sum = 0;
+  for (int m = j; m < row->stages; m++) sum += w[m] * row->a[m][j];
+  return sum;
+}
+
+static void add(size_t n, double w, const double *a, double *sum) {
+  for (size_t i = 0; i < n; i++) sum[i] += w * a[i];
+}
+
+/* The acceleration k[i] of stage i, from those before it. `known` is all but its own part. */
+static msr_status solve_stage(const tableau *row, int i, const msr_interval *interval,
+                              const msri_stage *at, msr_workspace *work, double *known,
+                              double *const *k, double *memory, msr_error *err) {
+  const size_t n = at->system->n;
+  const double h = interval->h, own = row->a[i][i] * row->a[i][i] * h * h;
+  double *d = k[i];
+  for (size_t m = 0; m < n; m++) known[m] = row->c[i] * h * at->v0[m];
+  for (int j = 0; j < i; j++) add(n, h * h * twice(row, row->a[i], j), k[j], known);
+  memcpy(d, known, n * sizeof *d);
+  if (i > 0) add(n, own, k[i - 1], d);
+  msri_stage stage = *at;
+  stage.t = msr_interval_time(interval, row->c[i]);
+  stage.known = known;
+  stage.weight = own;
+  const msr_status status = msri_newton(&stage, memory, work->object, d, err);
+  for (size_t m = 0; m < n; m++) d[m] = (d[m] - known[m]) / own;
+  return status;
+}
+
+static msr_status step(const msr_integrator *self, const msr_system *system,
+                       const msr_interval *interval, double *q, double *v, msr_workspace *work,
+                       msr_error *err) {
+  const tableau *row = self->coefficients;
+  const size_t n = system->n;
+  const double h = interval->h;
+  double *known = work->vector, *k[MOST_STAGES], *memory = known + (size_t)(1 + row->stages) * n;
+  for (int i = 0; i < row->stages; i++) k[i] = known + (size_t)(1 + i) * n;
+  const msri_stage stage = {.system = system, .q0 = q, .v0 = v};
+  msr_status status = msri_damp(system, interval->t, h / 2, false, q, v);
+  for (int i = 0; i < row->stages && status == MSR_OK; i++)
+    status = solve_stage(row, i, interval, &stage, work, known, k, memory, err);
+  if (status != MSR_OK) return status;
+  add(n, h, v, q);
+  for (int j = 0; j < row->stages; j++) {
+    add(n, h * h * twice(row, row->b, j), k[j], q);
+    add(n, h * row->b[j], k[j], v);
+  }
+  return msri_damp(system, interval->end, h / 2, true, q, v);
+}
+
+#define GAMMA 0.29289321881345247560 /* 1 - 1/sqrt 2 */
+
+static const tableau backward_euler = {1, {{1}}, {1}, {1}};
+static const tableau midpoint = {1, {{0.5}}, {1}, {0.5}};
+static const tableau sdirk2 = {2, {{GAMMA}, {1 - GAMMA, GAMMA}}, {1 - GAMMA, GAMMA}, {GAMMA, 1}};
+
+const msr_integrator msr_integrator_backward_euler = {
+    .name = "backward-euler",
+    .summary = "backward Euler: implicit, L-stable, damps whatever the step doesn't follow",
+    .reference = "Curtiss & Hirschfelder 1952, Proc. Nat. Acad. Sci. 38, 235",
+    .order = 1,
+    .splits = true,
+    .implicit = true,
+    .stability = INFINITY,
+    .damping_stability = INFINITY,
+    .vectors = 1 + 1 + MSRI_NEWTON_VECTORS,
+    .open = msri_newton_open,
+    .close = free,
+    .step = step,
+    .coefficients = &backward_euler,
+};
+
+const msr_integrator msr_integrator_implicit_midpoint = {
+    .name = "implicit-midpoint",
+    .summary = "the implicit midpoint rule: stable for any step where forces are linear",
+    .reference = "Hairer, Lubich & Wanner 2006, Geometric Numerical Integration, II.1",
+    .order = 2,
+    .symplectic = true,
+    .reversible = true,
+    .splits = true,
+    .implicit = true,
+    .stability = INFINITY,
+    .damping_stability = INFINITY,
+    .vectors = 1 + 1 + MSRI_NEWTON_VECTORS,
+    .open = msri_newton_open,
+    .close = free,
+    .step = step,
+    .coefficients = &midpoint,
+};
+
+const msr_integrator msr_integrator_sdirk2 = {
+    .name = "sdirk2",
+    .summary = "two implicit stages: L-stable, damps less than backward Euler",
+    .reference = "Alexander 1977, SIAM J. Numer. Anal. 14, 1006",
+    .order = 2,
+    .splits = true,
+    .implicit = true,
+    .stability = INFINITY,
+    .damping_stability = INFINITY,
+    .vectors = 1 + 2 + MSRI_NEWTON_VECTORS,
+    .open = msri_newton_open,
+    .close = free,
+    .step = step,
+    .coefficients = &sdirk2,
+};

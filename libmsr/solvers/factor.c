@@ -1,0 +1,83 @@
+/* factor.c - incomplete factors L D L^T of A = M + c K, by blocks of 2 x 2 in the order of the
+ * masses: only D differs from that of A, by what elimination does to the diagonal (Kershaw 1978, J.
+ * Comput. Phys. 26, 43; no fill-in). On a lattice of 4 neighbours that is turned but not deformed
+ * rows and columns decouple into chains, which have none: there it is exact.
+ *
+ * Elimination of mass i with pivot d leaves of its tie s to mass j what is left of two springs in a
+ * row, s d^-1 (d - s). That is positive where s and d - s are, so that no pivot falls below its
+ * mass but by rounding or by springs that push. */
+#include "solvers/stiffness.h"
+
+#include <math.h>
+#include <string.h>
+
+static void start_pivots(msri_stiffness *a) {
+  for (size_t i = 0; i < a->graph->n; i++) {
+    const double m = a->m[i * a->m_stride];
+    a->pivot[i] = (msri_block){m, 0, m};
+  }
+  for (size_t n = 0; n < a->springs->n_anchors; n++) {
+    msri_block *pivot = &a->pivot[a->springs->anchor[n].i];
+    *pivot = msri_block_sum(*pivot, a->anchor[n]);
+  }
+}
+
+/* Raises both eigenvalues of d by what the lower one is below `least`. */
+static void lift(msri_block *d, double least) {
+  const double middle = (d->xx + d->yy) / 2, half = (d->xx - d->yy) / 2;
+  const double missing = least - (middle - sqrt(half * half + d->xy * d->xy));
+  d->xx += missing;
+  d->yy += missing;
+}
+
+/* d^-1, after lifting it if it isn't above `least`. */
+static msri_block invert(msri_block *d, double least) {
+  const double xx = d->xx - least, yy = d->yy - least;
+  if (!(xx > 0 && xx * yy > d->xy * d->xy)) lift(d, least);
+  const double scale = 1 / (d->xx * d->yy - d->xy * d->xy);
+  return (msri_block){d->yy * scale, -d->xy * scale, d->xx * scale};
+}
+
+/* The symmetric part of s d^-1 (d - s), with l = s d^-1. */
+static msri_block in_a_row(msri_square l, msri_block d, msri_block s) {
+  const double xx = d.xx - s.xx, xy = d.xy - s.xy, yy = d.yy - s.yy;
+  return (msri_block){l.xx * xx + l.xy * xy, (l.xx * xy + l.xy * yy + l.yx * xx + l.yy * xy) / 2,
+                      l.yx * xy + l.yy * yy};
+}
+
+void msri_stiffness_factorise(msri_stiffness *a) {
+  const uint32_t *begin = a->graph->begin, *end = a->graph->end;
+  const double share = 0.05; /* of a mass: half of what springs that push may leave of it */
+  start_pivots(a);
+  for (size_t i = 0; i < a->graph->n; i++) {
+    msri_block d = a->pivot[i];
+    for (size_t p = begin[i]; p < begin[i + 1]; p++) d = msri_block_sum(d, a->tie[p]);
+    const msri_block inverse = invert(&d, share * a->m[i * a->m_stride]);
+    for (size_t p = begin[i]; p < begin[i + 1]; p++) {
+      msri_block *pivot = &a->pivot[end[p]];
+      a->lower[p] = msri_block_product(a->tie[p], inverse);
+      *pivot = msri_block_sum(*pivot, in_a_row(a->lower[p], d, a->tie[p]));
+    }
+    a->pivot[i] = inverse;
+  }
+}
+
+double msri_stiffness_precondition(const msri_stiffness *a, const msri_pair *r, msri_pair *z) {
+  const uint32_t *begin = a->graph->begin, *end = a->graph->end;
+  const size_t n = a->graph->n;
+  double rz = 0;
+  memcpy(z, r, n * sizeof *z);
+  for (size_t i = 0; i < n; i++) {
+    const msri_pair y = z[i];
+    for (size_t p = begin[i]; p < begin[i + 1]; p++)
+      z[end[p]] = msri_sum(z[end[p]], msri_square_times(a->lower[p], y));
+  }
+  for (size_t i = n; i-- > 0;) {
+    msri_pair y = msri_block_times(a->pivot[i], z[i]);
+    for (size_t p = begin[i]; p < begin[i + 1]; p++)
+      y = msri_sum(y, msri_square_times_from_left(a->lower[p], z[end[p]]));
+    z[i] = y;
+    rz += msri_product(r[i], y);
+  }
+  return rz;
+}
