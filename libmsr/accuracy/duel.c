@@ -85,7 +85,7 @@ void msri_reference_clear(msri_reference *reference) {
   *reference = (msri_reference){0};
 }
 
-msr_status msri_duel(msri_setting *setting, const msri_pair *pair, int level, double parted,
+msr_status msri_duel(msri_setting *setting, const msri_rivals *pair, int level, double parted,
                      msri_reference *reference, msr_error *err) {
   duel d = {.setting = setting, .made = reference, .parted = parted};
   *reference = (msri_reference){0};

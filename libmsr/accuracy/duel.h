@@ -12,13 +12,13 @@ typedef struct msri_entrant {
   double fineness, atol;
 } msri_entrant;
 
-typedef struct msri_pair {
+typedef struct msri_rivals {
   msri_entrant truth, witness;
-} msri_pair;
+} msri_rivals;
 
 /* A reference, of 0 instants if they don't agree at all, up to where they differ by more than
  * `parted`, or where one of them is stopped or unstable. */
-msr_status msri_duel(msri_setting *setting, const msri_pair *pair, int level, double parted,
+msr_status msri_duel(msri_setting *setting, const msri_rivals *pair, int level, double parted,
                      msri_reference *reference, msr_error *err);
 
 #endif

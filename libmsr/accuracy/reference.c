@@ -10,11 +10,11 @@
 
 /* Whatever sees to supports is the same for all methods at the same step: there the two of a pair
  * have different ones. The first of each list is for a quick look. */
-static const msri_pair smooth[] = {
+static const msri_rivals smooth[] = {
     {{&msr_integrator_srkn6, 1, 0}, {&msr_integrator_rk8pd, 1, 1e-3}},
     {{&msr_integrator_kahan_li_8, 1, 0}, {&msr_integrator_rk8pd, 1, 1e-6}},
 };
-static const msri_pair impacts[] = {
+static const msri_rivals impacts[] = {
     {{&msr_integrator_pefrl, 2, 0}, {&msr_integrator_verlet, 3, 0}},
     {{&msr_integrator_kahan_li_8, 1, 0}, {&msr_integrator_rk4, 3, 0}},
     {{&msr_integrator_verlet, 12, 0}, {&msr_integrator_pefrl, 5, 0}},
@@ -27,7 +27,7 @@ typedef struct quest {
   msri_setting *setting;
   const msri_reference_goal *goal;
   msri_reference best;
-  const msri_pair *pair; /* that made it */
+  const msri_rivals *pair; /* that made it */
   double spent;          /* on its last level [s] */
   bool pays;             /* was that worth it? */
 } quest;
@@ -60,7 +60,7 @@ static bool time_for_more(const quest *q) {
 }
 
 /* A level of a pair; it's kept if it is better than the best so far. */
-static msr_status try(quest *q, const msri_pair *pair, int level, msr_error *err) {
+static msr_status try(quest *q, const msri_rivals *pair, int level, msr_error *err) {
   const double start = msri_watch_elapsed(&q->setting->watch);
   msri_reference next;
   msri_watch_next(&q->setting->watch, q->goal->share, "reference: %s and %s, level %d",
@@ -80,7 +80,7 @@ static msr_status try(quest *q, const msri_pair *pair, int level, msr_error *err
 }
 
 /* The first level of every pair, until one is good enough. */
-static msr_status try_pairs(quest *q, const msri_pair *pair, size_t n, msr_error *err) {
+static msr_status try_pairs(quest *q, const msri_rivals *pair, size_t n, msr_error *err) {
   msr_status status = MSR_OK;
   for (size_t i = q->goal->enough >= quick_goal ? 0 : 1; status == MSR_OK && i < n; i++) {
     if (good_enough(q) || q->setting->watch.over) break;
@@ -92,7 +92,7 @@ static msr_status try_pairs(quest *q, const msri_pair *pair, size_t n, msr_error
 /* Refines the pair whose first level is best, the quick one aside. */
 static msr_status try_all(quest *q, msr_error *err) {
   const bool supports = q->setting->contacts;
-  const msri_pair *pair = supports ? impacts : smooth;
+  const msri_rivals *pair = supports ? impacts : smooth;
   const size_t n = supports ? sizeof impacts / sizeof *impacts : sizeof smooth / sizeof *smooth;
   msr_status status = try_pairs(q, pair, n, err);
   if (!q->pair || q->pair == pair) q->pair = pair + 1;
