@@ -28,8 +28,8 @@ typedef struct quest {
   const msri_reference_goal *goal;
   msri_reference best;
   const msri_rivals *pair; /* that made it */
-  double spent;          /* on its last level [s] */
-  bool pays;             /* was that worth it? */
+  double spent;            /* on its last level [s] */
+  bool pays;               /* was that worth it? */
 } quest;
 
 /* Does b reach as far as a, with less error there? */
