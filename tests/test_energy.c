@@ -336,9 +336,9 @@ static void a_bounce_itself_costs_nothing(void **state) {
   const struct {
     const msr_integrator *method;
     double gain; /* of energy, per step */
-  } rows[] = {{&msr_integrator_verlet, 0},
-              {&msr_integrator_rk4, 0},
-              {&msr_integrator_euler, mass * pow(g * h, 2) / 2}};
+  } rows[] = {{&msr_integrator_verlet, 0}, {&msr_integrator_rk4, 0},
+              {&msr_integrator_rkf45, 0},  {&msr_integrator_rkck, 0},
+              {&msr_integrator_rk8pd, 0},  {&msr_integrator_euler, mass * pow(g * h, 2) / 2}};
   for (size_t r = 0; r < LENGTH(rows); r++) {
     const msr_conf conf = {h, g, mass, 1, 1, 1};
     const world w = open_world(scene_of(shaft, &conf, NULL), rows[r].method, 1);
