@@ -282,7 +282,10 @@ typedef struct msr_system {
   /* x[n] with |A x - r| <= tolerance |r|; da/dq may be what is near it and makes A positive.
    * Both NULL: implicit methods take differences of a. */
   msr_status (*solve)(void *self, const double *r, double tolerance, double *x);
-  double atol, rtol; /* largest error of a step, atol + rtol |q|, that adaptive methods accept */
+  /* Adaptive methods take a step back if its estimated error is larger than atol + rtol |q| in q, or
+   * atol + rtol |v| in v with times in seconds, |.| being the largest coordinate. Both finite, 0 or
+   * more, or MSR_EUSAGE; both 0: atol 1e-6. */
+  double atol, rtol;
 } msr_system;
 
 /* q += h u along a path bent by a, past what is in the way if there is anything. What drift
@@ -317,7 +320,8 @@ typedef struct msr_integrator {
   const char *name;      /* one word */
   const char *summary;   /* one line */
   const char *reference; /* author, year, place; NULL: none */
-  int order;             /* error ~ h^order at a fixed time */
+  int order;             /* error ~ h^order at a fixed time; adaptive: of its own steps, the highest
+                          * there is */
   int damped_order;      /* the same where a force depends on v; 0: order */
   bool symplectic;       /* keeps phase-space area, where a is a gradient and v isn't used */
   bool reversible;       /* flipping v retraces the path, likewise, where no support is met */
@@ -327,9 +331,11 @@ typedef struct msr_integrator {
                           * calls bounce(); else the library does after each step */
   bool implicit;         /* solves equations: evaluations are as many as that takes */
   bool adaptive;         /* chooses its own steps within the interval, by atol and rtol */
-  bool remembers;        /* more than (t, q, v): a copy of the state or a saved one begins anew */
+  bool remembers;        /* more than (t, q, v): a copy of the state or a saved one begins anew, and
+                          * goes on with other bits */
   double evaluations;    /* of a, per step; 0: as many as it takes */
-  double stability;      /* largest stable h*omega for q'' = -omega^2 q; 0: none, INFINITY: all */
+  double stability;      /* largest stable h*omega for q'' = -omega^2 q; 0: none, INFINITY: all, as
+                          * of what is adaptive */
   double damping_stability; /* largest stable h*gamma for v' = -gamma v: through damp() if it
                              * splits, else through a; 0: none is */
   size_t vectors;           /* of n doubles of workspace */
@@ -358,7 +364,14 @@ MSR_API extern const msr_integrator msr_integrator_srkn6;
 MSR_API extern const msr_integrator msr_integrator_kahan_li_6;
 MSR_API extern const msr_integrator msr_integrator_kahan_li_8;
 MSR_API extern const msr_integrator msr_integrator_rk4;
-MSR_API extern const msr_integrator msr_integrator_rkf45; /* adaptive, as those that follow */
+
+/* Adaptive, explicit, by GSL (odeiv2). Errors after some periods of the motion are of about atol,
+ * rk8pd's a tenth; through supports they are those of the rule of impact and of the steps taken.
+ * MSR_EUNSTABLE where a isn't finite or no step is small enough, and after 10^7 tries in a step;
+ * q and v are then as before. GSL's memory isn't in msr_plan_figures: 16 to 30 times that of x, y,
+ * vx and vy [masses]; should it be lacking, MSR_ENOMEM, or if another thread takes what was left in
+ * that very moment, what GSL's handler of errors does: set one. */
+MSR_API extern const msr_integrator msr_integrator_rkf45;
 MSR_API extern const msr_integrator msr_integrator_rkck;
 MSR_API extern const msr_integrator msr_integrator_rk8pd;
 MSR_API extern const msr_integrator msr_integrator_msadams;
@@ -468,13 +481,16 @@ typedef enum msr_impacts {
 typedef struct msr_plan_options {
   const msr_integrator *integrator; /* NULL: Verlet */
   uint64_t substeps; /* steps per iteration; 0: as many as keep below the safe step */
-  double atol, rtol; /* of a step, for adaptive methods: error of q [px] and v [px/s] up to
-                      * atol + rtol |q|; both 0: atol 1e-6 */
+  double atol, rtol; /* of adaptive methods, as in msr_system: the error of a step is up to
+                      * atol + rtol |q| [px] in x and y and atol + rtol |v| [px/s] in vx and vy; an
+                      * error of v shakes a stiff spring little and often, so that a second of any
+                      * scene ends within some atol [px]; both 0: atol 1e-6 */
   msr_impacts impacts;
 } msr_plan_options;
 
 /* Compiles the scene, which may be freed after; the integrator must outlive the plan. `options` may
- * be NULL. MSR_EUSAGE if the integrator lacks name, summary or step; MSR_EINPUT if no number of
+ * be NULL. MSR_EUSAGE if the integrator lacks name, summary or step, or a tolerance isn't finite or
+ * is negative; MSR_EINPUT if no number of
  * substeps is enough; MSR_ENOMEM; or what force->prepare or force->rates returns. */
 MSR_API msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *options,
                                    msr_plan **plan, msr_error *err);

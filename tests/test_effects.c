@@ -492,7 +492,7 @@ static void my_driving_force_is_followed(void **unused) {
   const world failing = open_world(with(plain(), &driving, &params), NULL, 0);
   msr_error err;
   assert_int_equal(msr_state_step(failing.state, 1, &err), MSR_EIO);
-  assert_string_equal(err.message, "iteration 0: driving: input or output failed");
+  assert_string_equal(err.message, "force driving: input or output failed");
   close_world(failing);
 }
 

@@ -318,17 +318,45 @@ static msr_status pull(void *self, double t, const double *q, const double *v, d
 
 static bool integrate(void) {
   const msr_system system = {.n = 1, .acceleration = pull};
-  msr_error err;
-  double q = 1, v = 0;
-  const bool success =
-      done(msr_integrate(&msr_integrator_rk4, &system, 0, 0.1, 10, &q, &v, &err), &err);
-  if ((q != 1 || v != 0) != success) wrong++;
+  bool success = true;
+  for (const msr_integrator *const *i = msr_integrators; *i && success; i++) {
+    msr_error err;
+    double q = 1, v = 0;
+    success = done(msr_integrate(*i, &system, 0, 0.1, 10, &q, &v, &err), &err);
+    if ((q != 1 || v != 0) != success) wrong++;
+  }
   return success;
 }
 
 static void integrators(void **unused) {
   (void)unused;
-  assert_each_failure_is_told(integrate, 1);
+  size_t n = 0;
+  while (msr_integrators[n]) n++;
+  assert_each_failure_is_told(integrate, n);
+}
+
+/* Each method on a scene of its own: what open makes is the state's, and no step allocates. */
+static bool run_each(void) {
+  bool success = true;
+  for (const msr_integrator *const *i = msr_integrators; *i && success; i++) {
+    msr_error err;
+    msr_plan *own = NULL;
+    msr_state *state = NULL;
+    success = done(msr_plan_create(scene, &(msr_plan_options){.integrator = *i}, &own, &err), &err);
+    success = success && done(msr_state_create(own, &state, &err), &err);
+    made_if(success, state);
+    const size_t before = alloc_calls;
+    if (success && msr_state_step(state, 2, &err) != MSR_OK && (*i)->stability > 0) wrong++;
+    if (alloc_calls != before) wrong++;
+    msr_state_free(state);
+    msr_plan_free(own);
+  }
+  return success;
+}
+
+static void states_of_each_method(void **unused) {
+  (void)unused;
+  assert_each_failure_is_told(run_each, 60);
 }
 
 int main(void) {
@@ -342,6 +370,7 @@ int main(void) {
       cmocka_unit_test_setup_teardown(sinks_of_runs, make_plan, free_plan),
       cmocka_unit_test_setup_teardown(streams, make_plan, free_plan),
       cmocka_unit_test(integrators),
+      cmocka_unit_test_setup_teardown(states_of_each_method, make_plan, free_plan),
   };
   return cmocka_run_group_tests_name("memory", tests, set_up, tear_down);
 }

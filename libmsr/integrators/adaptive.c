@@ -20,7 +20,7 @@ typedef struct stepper {
   size_t memory;    /* vectors of y that GSL allocates */
   unsigned surplus; /* p over the order that GSL tells */
   bool needs_slope; /* each step begins with y' */
-  double share;     /* of the tolerance that makes global errors of about atol in some 1/omega */
+  double share;     /* of the tolerance, so that errors of all methods are about as large */
 } stepper;
 
 /* What open makes. */
@@ -41,9 +41,10 @@ typedef struct course {
   const stepper *row;
   const msr_system *system;
   double *y, *y0, *slope, *error; /* [2n]; y0: before the step */
-  double t, end, smallest;        /* steps below the smallest don't move t by much of its digits */
-  double share;                   /* error over tolerance of the last step tried */
-  msr_status status;              /* of the acceleration */
+  double t, end;
+  double smallest;   /* a step below it would be lost in the digits of t */
+  double share;      /* error over tolerance of the last step tried */
+  msr_status status; /* of the acceleration */
 } course;
 
 static const uint64_t most_tries = 10 * 1000 * 1000; /* of steps, in an interval */
@@ -86,8 +87,9 @@ static msr_status restart(course *c) {
   const msr_status status = find_slope(c);
   if (status != MSR_OK) return status;
   const double p = gsl_odeiv2_step_order(own->step) + c->row->surplus;
-  const double rate = msri_tolerance_share(&own->tolerance, own->n, c->slope);
   const double longest = own->h > 0 ? own->h : fabs(c->end - c->t);
+  msri_tolerance_fit(&own->tolerance, own->n, c->y, longest, c->slope);
+  const double rate = msri_tolerance_share(&own->tolerance, own->n, c->slope);
   const double h = rate > 0 && isfinite(rate) ? pow(rate, -1 / p) : longest;
   own->h = msri_max(c->smallest, msri_min(longest, h));
   own->begun = true;
@@ -100,9 +102,10 @@ static msr_status attempt(course *c, double h) {
   const gsl_odeiv2_system system = {evaluate, NULL, 2 * own->n, c};
   const msr_status status = c->row->needs_slope ? find_slope(c) : MSR_OK;
   if (status != MSR_OK) return status;
+  const double *slope = own->sloped ? c->slope : NULL;
+  msri_tolerance_fit(&own->tolerance, own->n, c->y, h, slope);
   memcpy(c->y0, c->y, 2 * own->n * sizeof *c->y);
-  const int gsl = gsl_odeiv2_step_apply(own->step, c->t, h, c->y, c->error,
-                                        own->sloped ? c->slope : NULL, NULL, &system);
+  const int gsl = gsl_odeiv2_step_apply(own->step, c->t, h, c->y, c->error, slope, NULL, &system);
   c->share = gsl == GSL_SUCCESS ? msri_tolerance_share(&own->tolerance, own->n, c->error)
                                 : (double)INFINITY;
   return c->status;
@@ -125,48 +128,48 @@ static msr_status advance(course *c, double h, msr_workspace *work) {
   const double p = gsl_odeiv2_step_order(own->step) + c->row->surplus;
   const msr_status status = attempt(c, h);
   if (status != MSR_OK) return status;
-  const bool shortened = fabs(h) < own->h;
-  const double next = fabs(h) * msri_step_growth(c->share, p);
+  own->h = fabs(h) * msri_step_growth(c->share, p);
   if (!(c->share <= 1)) {
     memcpy(c->y, c->y0, 2 * own->n * sizeof *c->y);
-    own->h = next;
     return MSR_OK;
   }
   c->t = h == c->end - c->t ? c->end : c->t + h;
-  own->h = shortened ? msri_max(own->h, next) : next;
   own->sloped = false;
   work->steps++;
   return bounce(c, h);
 }
 
-/* Why no smaller step is tried. */
-static msr_status give_up(const course *c, msr_error *err) {
-  if (!isfinite(c->share))
+/* Why no smaller step than h is tried. What isn't finite makes the error of a pair no number; where
+ * msadams fails, it's looked for. */
+static msr_status give_up(course *c, double h, msr_error *err) {
+  (void)evaluate(c->t + h, c->y, c->slope, c);
+  if (c->status != MSR_OK) return c->status;
+  const double rate = msri_tolerance_share(&c->own->tolerance, c->own->n, c->slope);
+  if (isnan(c->share) || !isfinite(rate))
     return msri_fail(err, MSR_EUNSTABLE,
                      "at t = %.10g s the acceleration isn't finite, however small the step: look "
                      "for a force or a value that is too large",
                      c->t);
   return msri_fail(err, MSR_EUNSTABLE,
-                   "at t = %.10g s no step is so small that its error is within atol %g, rtol %g: "
+                   "at t = %.10g s no step is so small that its error is within atol and rtol: "
                    "raise them, or look for a force that grows without bound",
-                   c->t, c->own->tolerance.atol, c->own->tolerance.rtol);
+                   c->t);
 }
 
 static msr_status cover(course *c, msr_workspace *work, msr_error *err) {
   adaptive *own = c->own;
   for (uint64_t tries = 0; tries < most_tries; tries++) {
     if (c->t == c->end) return MSR_OK;
-    msri_tolerance_fit(&own->tolerance, own->n, c->y);
     msr_status status = own->begun ? MSR_OK : restart(c);
     if (status != MSR_OK) return status;
     const double rest = c->end - c->t, h = msri_step_portion(own->h, rest);
-    if (fabs(h) < c->smallest && h != rest) return give_up(c, err);
+    if (fabs(h) < c->smallest && h != rest) return give_up(c, h, err);
     status = advance(c, h, work);
     if (status != MSR_OK) return status;
   }
   return msri_fail(err, MSR_EUNSTABLE,
-                   "%llu steps in a single one of the run lead no further than t = %.10g s: raise "
-                   "atol or rtol, lower DT, or use an implicit method",
+                   "%llu steps of its own, within one of the run, lead no further than t = %.10g "
+                   "s: raise atol or rtol, lower DT, or use an implicit method",
                    (unsigned long long)most_tries, c->t);
 }
 

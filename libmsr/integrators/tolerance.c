@@ -26,10 +26,17 @@ static double largest(size_t n, const double *a) {
   return most;
 }
 
-void msri_tolerance_fit(msri_tolerance *tolerance, size_t n, const double *y) {
-  const double rtol = msri_max(tolerance->rtol, 10 * DBL_EPSILON), least = DBL_MIN / DBL_EPSILON;
-  tolerance->q = msri_max(tolerance->atol + rtol * largest(n, y), least);
-  tolerance->v = msri_max(tolerance->atol + rtol * largest(n, y + n), least);
+static double fit(const msri_tolerance *tolerance, size_t n, const double *y, double h,
+                  const double *slope) {
+  const double rtol = msri_max(tolerance->rtol, 10 * DBL_EPSILON);
+  const double size = largest(n, y), change = slope ? fabs(h) * largest(n, slope) : 0;
+  return msri_max(tolerance->atol + rtol * msri_max(size, change), DBL_MIN / DBL_EPSILON);
+}
+
+void msri_tolerance_fit(msri_tolerance *tolerance, size_t n, const double *y, double h,
+                        const double *slope) {
+  tolerance->q = fit(tolerance, n, y, h, slope);
+  tolerance->v = fit(tolerance, n, y + n, h, slope ? slope + n : NULL);
 }
 
 double msri_tolerance_share(const msri_tolerance *tolerance, size_t n, const double *e) {

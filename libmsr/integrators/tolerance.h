@@ -17,8 +17,10 @@ typedef struct msri_tolerance {
 /* Are atol and rtol finite and 0 or more? Both 0: atol becomes 1e-6. MSR_EUSAGE. */
 msr_status msri_tolerance_check(msri_tolerance *tolerance, msr_error *err);
 
-/* Fits q and v to y = q[n], v[n]; never below what rounding does to them. */
-void msri_tolerance_fit(msri_tolerance *tolerance, size_t n, const double *y);
+/* Fits q and v to y = q[n], v[n] at the start of a step of h, or, if that is more, to its change,
+ * h y' (slope; NULL: unknown); never below what rounding does to them. */
+void msri_tolerance_fit(msri_tolerance *tolerance, size_t n, const double *y, double h,
+                        const double *slope);
 
 /* The largest |e| over tolerance, e = of q[n], of v[n]; not finite if an element isn't. */
 double msri_tolerance_share(const msri_tolerance *tolerance, size_t n, const double *e);

@@ -2,9 +2,11 @@
  *
  * A sound run can't gain energy that the scene didn't have to give: kinetic and spring energy at
  * the start, plus the most that the other potentials (gravity, pushes) lost, plus what driving
- * forces (wind) have done, h sum max(0, F v) in each substep. A fall out of the picture gives no
- * more than one to its bottom. To that comes what is no flaw: one kick of 2 h F by the outer forces
- * of the start (a mass that rests on a support is kicked and reflected for ever), and rounding.
+ * forces (wind) have done, h sum max(0, F v) in each substep, with v at its end and F there or, if
+ * that is more, at its start: in a long step from rest, air is strong first and fast last. A fall
+ * out of the picture gives no more than one to its bottom. To that comes what is no flaw: one kick
+ * of 2 h F by the outer forces of the start (a mass that rests on a support is kicked and reflected
+ * for ever), and rounding.
  *
  * Near the limit of stability, with s = h omega / 2 near 1, the energy of the method itself swings:
  * by 1 / (1 - s^2) with Verlet, by (1 + s) / (1 - s) with symplectic Euler, at most 4 / (1 - s^2),
@@ -32,16 +34,26 @@ static energies energies_of(const msr_state *state) {
 
 /* ---- What the scene has to give */
 
-msr_status msri_guard_follow(msr_state *state) {
+static msr_status find_drive(msr_state *state) {
   if (!state->plan->driven) return MSR_OK;
   const msr_view view = msr_state_view(state);
-  const size_t n = 2 * view.n;
-  double *f = state->drive, work = 0;
-  memset(f, 0, n * sizeof *f);
-  const msr_status status =
-      msri_state_add_forces(state, &view, msri_force_drives, false, f, f + view.n);
-  for (size_t i = 0; i < n; i++) work += msri_max(0, f[i] * state->v[i]);
-  state->guard.work += state->plan->figures.h * work;
+  double *f = state->drive;
+  memset(f, 0, 2 * view.n * sizeof *f);
+  return msri_state_add_forces(state, &view, msri_force_drives, false, f, f + view.n);
+}
+
+static double power(const msr_state *state) {
+  const size_t n = 2 * state->plan->figures.masses;
+  double sum = 0;
+  for (size_t i = 0; i < n; i++) sum += msri_max(0, state->drive[i] * state->v[i]);
+  return sum;
+}
+
+msr_status msri_guard_follow(msr_state *state) {
+  if (!state->plan->driven) return MSR_OK;
+  const double before = power(state);
+  const msr_status status = find_drive(state);
+  state->guard.work += state->plan->figures.h * msri_max(before, power(state));
   return status;
 }
 
@@ -70,7 +82,8 @@ msr_status msri_guard_begin(msr_state *state, msr_error *err) {
   double *f = state->work.vector; /* the integrator begins anew */
   state->fresh = false;
   memset(f, 0, 2 * view.n * sizeof *f);
-  const msr_status status = msri_state_add_forces(state, &view, is_outer, false, f, f + view.n);
+  msr_status status = msri_state_add_forces(state, &view, is_outer, false, f, f + view.n);
+  if (status == MSR_OK) status = find_drive(state);
   const energies start = energies_of(state);
   state->guard = (msri_guard){
       .begun = status == MSR_OK,
@@ -104,6 +117,18 @@ static size_t culprit(const msr_view *s) {
   return fastest;
 }
 
+/* What to do where any step is stable: a step that is more accurate. */
+static void advise_accuracy(const msr_plan_figures *f, char *text, size_t size) {
+  if (f->integrator->adaptive)
+    msri_format(text, size,
+                "any step is stable, but errors are too large: lower atol, %g, and rtol, %g",
+                f->atol, f->rtol);
+  else
+    msri_format(text, size,
+                "any step is stable, but this one follows too little: try %llu substeps",
+                4 * (unsigned long long)f->substeps);
+}
+
 /* What to do: a step that is stable, in the user's terms. */
 static void advise(const msr_plan_figures *f, bool finite, char *text, size_t size) {
   const double substeps = ceil(f->dt / f->safe_step);
@@ -112,9 +137,7 @@ static void advise(const msr_plan_figures *f, bool finite, char *text, size_t si
   else if (f->h > f->safe_step)
     msri_format(text, size, "stable: DT %.3g, or %.10g substeps", 0.995 * f->safe_step, substeps);
   else if (finite && isinf(f->stable_step))
-    msri_format(text, size,
-                "any step is stable, but this one follows too little: try %llu substeps",
-                4 * (unsigned long long)f->substeps);
+    advise_accuracy(f, text, size);
   else if (finite)
     msri_format(text, size,
                 "the step is below the limit of stability, %.3g s: try %llu substeps, or damping",
@@ -123,13 +146,13 @@ static void advise(const msr_plan_figures *f, bool finite, char *text, size_t si
     msri_format(text, size, "the step is stable: look for a force or a value that is too large");
 }
 
-/* `ratio`: energy over what there was to give; not finite: a number isn't. */
+/* `ratio`: energy over what there was to give; NaN: a number isn't finite. */
 static msr_status refuse(const msr_state *state, double ratio, msr_error *err) {
   const msr_view view = msr_state_view(state);
   char name[64], what[96] = "is no longer finite", advice[192];
-  advise(&state->plan->figures, isfinite(ratio), advice, sizeof advice);
+  advise(&state->plan->figures, !isnan(ratio), advice, sizeof advice);
   msri_plan_mass_name(state->plan, culprit(&view), name, sizeof name);
-  if (isfinite(ratio))
+  if (!isnan(ratio))
     msri_format(what, sizeof what,
                 "has run away, with %.3g times the energy that the scene had to give", ratio);
   return msri_fail(err, MSR_EUNSTABLE, "unstable at iteration %llu, t = %g s: %s %s; %s",
