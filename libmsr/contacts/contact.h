@@ -1,19 +1,40 @@
-/* contact.h - what may stand in the way of a drift, behind one interface. */
+/* contact.h - what may stand in the way of masses, behind one interface. */
 #ifndef MSRI_CONTACT_H
 #define MSRI_CONTACT_H
 
 #include "base/base.h"
 
+/* What a step from (q0, v0) to (q, v) would meet. */
+typedef struct msri_meeting {
+  size_t masses;      /* that meet something */
+  double first, last; /* when the first and the last of them do, since the start of the step [s] */
+  double lasts;       /* the shortest time until one that is reflected comes back [s] */
+  double depth;       /* how far the deepest is inside at the end [px] */
+  size_t coordinate;  /* of q: that of the first one that crosses an edge, */
+  double edge;        /* which is at q = edge, */
+  double side;        /* inside being above it, 1, or below, -1 */
+} msri_meeting;
+
+/* q = x[n], y[n], likewise the others. */
 typedef struct msri_contact {
   void *self;
-  /* q += h u for n masses (q = x[n], y[n], likewise the others) along a path bent by a (may be
-   * NULL), stopped where something is in the way, which reflects v. Returns the number of
-   * collisions. */
+  /* q += h u for n masses along a path bent by a (may be NULL), stopped where something is in the
+   * way, which reflects v, the velocity in the middle of the drift. Returns the number of
+   * collisions. `owed` [2n] (NULL: not wanted) goes with a: v + owed * (a at the end), coordinate
+   * by coordinate, and then half a kick by a at the end, is more accurate; owed is 0 where nothing
+   * was met. */
   uint64_t (*drift)(const void *self, size_t n, double h, const double *u, const double *a,
-                    double *q, double *v);
-  /* The same for a step that went from (q0, v0) to (q, v) as if nothing were in the way. */
+                    double *q, double *v, double *owed);
+  /* The same for a step that went from (q0, v0) to (q, v) as if nothing were in the way; v is the
+   * velocity at the end, and has no half kick to come. */
   uint64_t (*bounce)(const void *self, size_t n, double h, const double *q0, const double *v0,
-                     double *q, double *v);
+                     double *q, double *v, double *owed);
+  /* For a method that is to end its step at the first impact; NULL: none is. */
+  void (*meet)(const void *self, size_t n, double h, const double *q0, const double *v0,
+               const double *q, const double *v, msri_meeting *meeting);
+  /* Puts those that met something between q0 and q on its edge and reflects v. Returns the number
+   * of collisions. */
+  uint64_t (*strike)(const void *self, size_t n, const double *q0, double *q, double *v);
   void (*release)(void *self);
 } msri_contact;
 

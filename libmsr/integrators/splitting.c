@@ -63,9 +63,9 @@ static void kick(const stage *s, double b) {
   if (b != 0) msri_add_scaled(s->system->n, b * s->h, s->a, s->v);
 }
 
-static msr_status drift(const stage *s, double share, const double *bend) {
+static msr_status drift(const stage *s, double share) {
   const double h = share * s->h;
-  if (s->system->drift) return msr_system_drift(s->system, h, s->v, bend, s->q, s->v);
+  if (s->system->drift) return msr_system_drift(s->system, h, s->v, s->a, s->q, s->v);
   msri_add_scaled(s->system->n, h, s->v, s->q);
   return MSR_OK;
 }
@@ -108,7 +108,6 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
                        msr_error *err) {
   const splitting *row = self->coefficients;
   stage s = {system, interval->t, interval->h, q, v, work->vector};
-  const double *bend = row->symmetric ? s.a : NULL;
   double share = 0;
   msr_status status = MSR_OK;
   (void)err;
@@ -119,7 +118,7 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
     if (kicks && !has) status = accelerate(&s);
     if (status == MSR_OK) status = pass(&s, &at);
     if (j == row->drifts || status != MSR_OK) break;
-    status = drift(&s, drift_of(row, j), bend);
+    status = drift(&s, drift_of(row, j));
     share += drift_of(row, j);
   }
   return status;

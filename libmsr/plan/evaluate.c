@@ -1,5 +1,5 @@
-/* evaluate.c - the problem that an integrator sees: q'' = a(t, q, v) made of the plan's terms, and
- * a drift that the plan's contact may stop. Each callback runs down the list of what is on. */
+/* evaluate.c - the problem that an integrator sees: q'' = a(t, q, v) made of the plan's terms. Each
+ * callback runs down the list of what is on. */
 #include "plan/state.h"
 
 #include "base/vector.h"
@@ -44,8 +44,8 @@ void msri_state_divide_by_mass(const msr_view *s, double *f) {
   }
 }
 
-static msr_status acceleration(void *self, double t, const double *q, const double *v, double *a) {
-  msr_state *state = self;
+msr_status msri_state_accelerate(msr_state *state, double t, const double *q, const double *v,
+                                 double *a) {
   const msr_view view = msri_plan_view(state->plan, t, q, v);
   memset(a, 0, 2 * view.n * sizeof *a);
   state->evaluations++;
@@ -53,6 +53,21 @@ static msr_status acceleration(void *self, double t, const double *q, const doub
       msri_state_add_forces(state, &view, v ? any : without_velocity, true, a, a + view.n);
   msri_state_divide_by_mass(&view, a);
   return status;
+}
+
+static bool damps(const msr_plan *plan) {
+  for (size_t i = 0; i < plan->n_terms; i++)
+    if (plan->term[i].force->uses_velocity) return true;
+  return false;
+}
+
+static msr_status acceleration(void *self, double t, const double *q, const double *v, double *a) {
+  msr_state *state = self;
+  if (state->known.q && !(v && damps(state->plan)) && msri_state_knows(state, t, q)) {
+    memcpy(a, state->ahead, 2 * state->plan->figures.masses * sizeof *a);
+    return MSR_OK;
+  }
+  return msri_state_accelerate(state, t, q, v, a);
 }
 
 /* v += h F(t, q, v + h/2 F(t, q, v) / m) / m for a force without a flow of its own. */
@@ -95,48 +110,15 @@ static msr_status damp(void *self, double t, double h, bool backward, const doub
   return MSR_OK;
 }
 
-/* Contacts are the effects that are on after the terms. */
-static void count_contacts(msr_state *state, uint64_t collisions) {
-  const msr_plan *plan = state->plan;
-  for (size_t e = plan->n_terms; e < plan->n_effects && plan->effect[e].on; e++) state->calls[e]++;
-  state->contacts += collisions;
-}
-
-static msr_status drift(void *self, double h, const double *u, const double *a, double *q,
-                        double *v) {
-  msr_state *state = self;
-  const msri_contact *contact = &state->plan->contact;
-  const size_t n = state->plan->figures.masses;
-  count_contacts(state, contact->drift(contact->self, n, h, u, a, q, v));
-  return MSR_OK;
-}
-
-static msr_status bounce(void *self, double h, const double *q0, const double *v0, double *q,
-                         double *v, bool *met) {
-  msr_state *state = self;
-  const msri_contact *contact = &state->plan->contact;
-  const size_t n = state->plan->figures.masses;
-  const uint64_t collisions = contact->bounce(contact->self, n, h, q0, v0, q, v);
-  *met = collisions > 0;
-  count_contacts(state, collisions);
-  return MSR_OK;
-}
-
-static bool damps(const msr_plan *plan) {
-  for (size_t i = 0; i < plan->n_terms; i++)
-    if (plan->term[i].force->uses_velocity) return true;
-  return false;
-}
-
 msr_system msri_state_system(msr_state *state) {
-  const bool touches = state->plan->contact.drift != NULL;
+  const bool own = state->plan->contact.drift && !msri_plan_bounces(state->plan);
   msr_system system = {
       .n = 2 * state->plan->figures.masses,
       .self = state,
       .acceleration = acceleration,
       .damp = damps(state->plan) ? damp : NULL,
-      .drift = touches && state->plan->figures.integrator->bounces ? drift : NULL,
-      .bounce = touches ? bounce : NULL,
+      .drift = own ? msri_state_drift : NULL,
+      .bounce = own ? msri_state_bounce : NULL,
       .atol = state->plan->figures.atol,
       .rtol = state->plan->figures.rtol,
   };

@@ -60,9 +60,18 @@ static inline bool msri_force_drives(const msr_force *force) {
   return !force->dissipative && (!force->conservative || force->uses_time);
 }
 
-/* Does the library see to contacts after each step, since the integrator doesn't? */
+/* Does the library see to contacts after each step? Where the integrator doesn't, or where it would
+ * do so after each of its own, but impacts are better located by its dense steps. */
 static inline bool msri_plan_bounces(const msr_plan *plan) {
-  return plan->contact.bounce && !plan->figures.integrator->bounces;
+  const msr_integrator *integrator = plan->figures.integrator;
+  if (!plan->contact.bounce) return false;
+  return !integrator->bounces || (integrator->adaptive && plan->contact.meet);
+}
+
+/* Does what met something need the acceleration at the end of the step? Implicit methods, whose
+ * steps may be too long for what that would say, do without. */
+static inline bool msri_plan_settles(const msr_plan *plan) {
+  return plan->contact.meet && !plan->figures.integrator->implicit;
 }
 
 /* The time after so many iterations and substeps: made of whole numbers, never summed, so that

@@ -11,7 +11,7 @@
 
 /* Where each array lies in the block, in bytes; `bytes` is the whole. */
 typedef struct layout {
-  size_t solver, q, v, work, before, middle, between, drive, scratch, calls, bytes;
+  size_t solver, q, v, work, before, owed, ahead, middle, between, drive, scratch, calls, bytes;
 } layout;
 
 static size_t reserve(size_t *end, size_t bytes) {
@@ -35,6 +35,8 @@ static layout lay_out(const msr_plan *plan) {
   l.v = reserve(&end, vector);
   l.work = reserve(&end, (vectors > 0 ? vectors : 1) * vector);
   l.before = reserve(&end, msri_plan_bounces(plan) ? 2 * vector : 0);
+  l.owed = reserve(&end, msri_plan_settles(plan) ? vector : 0);
+  l.ahead = reserve(&end, msri_plan_settles(plan) ? vector : 0);
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
   l.between = reserve(&end, plan->middle ? 2 * vector : 0);
   l.drive = reserve(&end, plan->driven ? vector : 0);
@@ -57,6 +59,8 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .v = (void *)(block + l.v),
       .work = {.vector = (void *)(block + l.work)},
       .before = (void *)(block + l.before),
+      .owed = msri_plan_settles(plan) ? (void *)(block + l.owed) : NULL,
+      .ahead = (void *)(block + l.ahead),
       .middle = (void *)(block + l.middle),
       .between = (void *)(block + l.between),
       .drive = (void *)(block + l.drive),
@@ -95,6 +99,7 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
   to->iteration = from->iteration;
   to->substep = from->substep;
   to->fresh = from->fresh && !from->plan->figures.integrator->remembers;
+  to->known.q = NULL;
   to->contacts = from->contacts;
   to->evaluations = from->evaluations;
   to->work.steps = from->work.steps;
@@ -105,6 +110,7 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
 
 void msri_state_touched(msr_state *state) {
   state->fresh = false;
+  state->known.q = NULL;
   state->guard.begun = false;
 }
 

@@ -15,6 +15,12 @@ typedef struct msri_guard {
   double gain;           /* the most energy from nowhere, over what there was to give */
 } msri_guard;
 
+/* Where state->ahead holds the acceleration, without what depends on v; q NULL: nowhere. */
+typedef struct msri_known {
+  const double *q;
+  double t;
+} msri_known;
+
 struct msr_state {
   const msr_plan *plan;
   uint64_t iteration, substep; /* done; substeps of the iteration that is under way */
@@ -26,6 +32,9 @@ struct msr_state {
   msr_workspace work;       /* vector [integrator->vectors, 1 at least][2n] */
   double *q, *v;            /* x[n], y[n]; vx[n], vy[n] */
   double *before;           /* [4n] if the library bounces: q, v before the step */
+  double *owed;             /* [2n] if the plan settles: see contacts.c; else NULL */
+  double *ahead;            /* [2n] likewise: the acceleration at the end of a step */
+  msri_known known;
   double *middle;           /* [4n] if plan->midpoint: force, velocity */
   double *between;          /* [4n] if plan->middle: the middle, force */
   double *drive;            /* [2n] if plan->driven: driving forces */
@@ -55,6 +64,23 @@ void msri_state_divide_by_mass(const msr_view *s, double *f);
 msr_status msri_state_add_forces(msr_state *state, const msr_view *view,
                                  bool (*wanted)(const msr_force *), bool step, double *fx,
                                  double *fy);
+
+/* a[2n] at (t, q, v), counted; v NULL: without what depends on it. What a force returns. */
+msr_status msri_state_accelerate(msr_state *state, double t, const double *q, const double *v,
+                                 double *a);
+
+/* Does state->ahead hold the acceleration at (t, q)? It's told once. */
+bool msri_state_knows(msr_state *state, double t, const double *q);
+
+/* drift and bounce of the system. */
+msr_status msri_state_drift(void *self, double h, const double *u, const double *a, double *q,
+                            double *v);
+msr_status msri_state_bounce(void *self, double h, const double *q0, const double *v0, double *q,
+                             double *v, bool *met);
+
+/* meet and strike of the contact, from state->before to q and v. */
+void msri_state_meet(msr_state *state, double h, msri_meeting *meeting);
+void msri_state_strike(msr_state *state);
 
 /* As msr_state_energy, without momentum and the longest spring. */
 msr_energy msri_state_energies(const msr_state *state);

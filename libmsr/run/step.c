@@ -3,6 +3,7 @@
 #include "run/step.h"
 
 #include "run/guard.h"
+#include "run/impacts.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -41,18 +42,20 @@ msr_status msr_integrate(const msr_integrator *integrator, const msr_system *sys
   return msri_hand_on(err, status, &said, "%s: %s", integrator->name, msr_status_text(status));
 }
 
-static msr_status begin(msr_state *state, const msr_system *system) {
+static msr_status begin(msr_state *state, const msr_system *system, double t) {
   const msr_integrator *integrator = state->plan->figures.integrator;
   if (state->fresh || !integrator->begin) return MSR_OK;
-  const msr_status status = integrator->begin(integrator, system, msri_state_time(state), state->q,
-                                              state->v, &state->work);
+  const msr_status status =
+      integrator->begin(integrator, system, t, state->q, state->v, &state->work);
   state->fresh = status == MSR_OK;
   return status;
 }
 
-static msr_status step(msr_state *state, const msr_system *system, const msr_interval *interval,
-                       msr_error *err) {
+msr_status msri_step_once(msr_state *state, const msr_system *system, const msr_interval *interval,
+                          msr_error *err) {
   const msr_integrator *integrator = state->plan->figures.integrator;
+  const msr_status status = begin(state, system, interval->t);
+  if (status != MSR_OK) return status;
   if (!integrator->adaptive) state->work.steps++;
   return integrator->step(integrator, system, interval, state->q, state->v, &state->work, err);
 }
@@ -60,16 +63,17 @@ static msr_status step(msr_state *state, const msr_system *system, const msr_int
 /* A step as if nothing were in the way, then what was. */
 static msr_status step_and_bounce(msr_state *state, const msr_system *system,
                                   const msr_interval *interval, msr_error *err) {
-  const size_t n = system->n;
-  double *q0 = state->before, *v0 = q0 + n;
-  bool met = false;
-  memcpy(q0, state->q, n * sizeof *q0);
-  memcpy(v0, state->v, n * sizeof *v0);
-  msr_status status = step(state, system, interval, err);
-  if (status == MSR_OK)
-    status = system->bounce(state, interval->h, q0, v0, state->q, state->v, &met);
-  if (met) state->fresh = false;
-  return status;
+  msri_keep_before(state);
+  const msr_status status = msri_step_once(state, system, interval, err);
+  return status == MSR_OK ? msri_bounce(state, interval->h) : status;
+}
+
+/* Who sees to what is in the way? */
+static msr_status step(msr_state *state, const msr_system *system, const msr_interval *interval,
+                       msr_error *err) {
+  if (!msri_plan_bounces(state->plan)) return msri_step_once(state, system, interval, err);
+  return state->plan->contact.meet ? msri_step_by_impacts(state, system, interval, err)
+                                   : step_and_bounce(state, system, interval, err);
 }
 
 /* One substep. */
@@ -77,10 +81,7 @@ static msr_status substep(msr_state *state, const msr_system *system, msr_error 
   const msr_plan_figures *f = &state->plan->figures;
   const msr_interval interval = {msri_state_time(state), f->h,
                                  msri_plan_time(f, state->iteration, state->substep + 1)};
-  msr_status status = begin(state, system);
-  if (status == MSR_OK)
-    status = msri_plan_bounces(state->plan) ? step_and_bounce(state, system, &interval, err)
-                                            : step(state, system, &interval, err);
+  const msr_status status = step(state, system, &interval, err);
   if (status != MSR_OK) return status;
   state->substep++;
   return msri_guard_follow(state);

@@ -13,4 +13,9 @@ typedef struct msri_poll {
 /* As msr_state_step. What poll returns, other than MSR_OK, ends it and comes back unchanged. */
 msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *poll, msr_error *err);
 
+/* A step of the integrator over an interval, begun anew if need be, past whatever it doesn't see to
+ * itself. */
+msr_status msri_step_once(msr_state *state, const msr_system *system, const msr_interval *interval,
+                          msr_error *err);
+
 #endif

@@ -1,0 +1,76 @@
+/* contacts.c - what is in the way, as integrators and the library's own steps see it.
+ *
+ * With impacts that are located, masses that met something are owed a part of the acceleration at
+ * the end of the step (see contacts/located.c), which is evaluated at once, and kept for the
+ * integrator to find when it asks for it next. */
+#include "plan/state.h"
+
+#include <string.h>
+
+/* Contacts are the effects that are on after the terms. */
+static void count(msr_state *state, uint64_t collisions) {
+  const msr_plan *plan = state->plan;
+  for (size_t e = plan->n_terms; e < plan->n_effects && plan->effect[e].on; e++) state->calls[e]++;
+  state->contacts += collisions;
+}
+
+static double end_of_step(const msr_state *state) {
+  return msri_plan_time(&state->plan->figures, state->iteration, state->substep + 1);
+}
+
+/* Pays what masses are owed after collisions. */
+static msr_status settle(msr_state *state, const double *q, double *v) {
+  const size_t n = 2 * state->plan->figures.masses;
+  const double t = end_of_step(state);
+  const msr_status status = msri_state_accelerate(state, t, q, NULL, state->ahead);
+  if (status != MSR_OK) return status;
+  for (size_t i = 0; i < n; i++) v[i] += state->owed[i] * state->ahead[i];
+  state->known = (msri_known){q, t};
+  return MSR_OK;
+}
+
+bool msri_state_knows(msr_state *state, double t, const double *q) {
+  const bool knows = state->known.q == q && state->known.t == t;
+  state->known.q = NULL;
+  return knows;
+}
+
+msr_status msri_state_drift(void *self, double h, const double *u, const double *a, double *q,
+                            double *v) {
+  msr_state *state = self;
+  const msri_contact *contact = &state->plan->contact;
+  const size_t n = state->plan->figures.masses;
+  double *owed = a ? state->owed : NULL;
+  const uint64_t collisions = contact->drift(contact->self, n, h, u, a, q, v, owed);
+  state->known.q = NULL;
+  count(state, collisions);
+  return owed && collisions > 0 ? settle(state, q, v) : MSR_OK;
+}
+
+msr_status msri_state_bounce(void *self, double h, const double *q0, const double *v0, double *q,
+                             double *v, bool *met) {
+  msr_state *state = self;
+  const msri_contact *contact = &state->plan->contact;
+  const size_t n = state->plan->figures.masses;
+  // in the last moment of a step what is owed is nothing, and the rounding of (q - q0) / h is much
+  double *owed = h > 1e-3 * state->plan->figures.h ? state->owed : NULL;
+  const uint64_t collisions = contact->bounce(contact->self, n, h, q0, v0, q, v, owed);
+  *met = collisions > 0;
+  state->known.q = NULL;
+  count(state, collisions);
+  return owed && *met ? settle(state, q, v) : MSR_OK;
+}
+
+void msri_state_meet(msr_state *state, double h, msri_meeting *meeting) {
+  const msri_contact *contact = &state->plan->contact;
+  const size_t n = state->plan->figures.masses;
+  const double *q0 = state->before, *v0 = q0 + 2 * n;
+  contact->meet(contact->self, n, h, q0, v0, state->q, state->v, meeting);
+  count(state, 0);
+}
+
+void msri_state_strike(msr_state *state) {
+  const msri_contact *contact = &state->plan->contact;
+  const size_t n = state->plan->figures.masses;
+  count(state, contact->strike(contact->self, n, state->before, state->q, state->v));
+}
