@@ -8,8 +8,8 @@
  * they did: e ~ t^g with g as measured, but at least 1 for symplectic methods and 2 for others, and
  * twice that to be safe; with supports nothing is promised beyond what was tried.
  *
- * Costs are counted in evaluations, and planned by the time that they take on a common machine, so
- * that the choice is the same again. */
+ * Costs are counted in calls of forces, and planned by the time that they take on a common machine,
+ * so that the choice is the same again. */
 #include "accuracy/aim.h"
 #include "accuracy/ladder.h"
 

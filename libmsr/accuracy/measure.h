@@ -24,7 +24,7 @@ typedef struct msri_limits {
 typedef struct msri_measured {
   msr_accuracy_point point; /* order and front aside; seconds are those of this one run's steps, as
                              * if it had come to the horizon */
-  double cost;              /* msri_trial_cost */
+  double cost;              /* as msri_trial_cost counts it */
   double share;             /* of the time up to the horizon that was run */
   double error;             /* largest in that time, also if the run was ended */
   double early;             /* in the first quarter of the time up to the horizon */

@@ -21,6 +21,8 @@ typedef struct study {
   msri_reference reference;
   msri_screens screens;
   msri_ladder *ladder; /* [setting.n_methods] */
+  double *cost;        /* of each point [made->n] */
+  size_t costs;        /* that there is room for */
   double finest;
   bool complete;
   msr_accuracy *made;
@@ -50,11 +52,8 @@ static msri_ladder *shortest(study *s) {
 }
 
 static bool is_hopeless(const study *s, const msri_measured *m) {
-  for (size_t i = 0; i < s->made->n; i++) {
-    const msr_accuracy_point *p = &s->made->point[i];
-    const msr_work work = {p->steps, p->evaluations};
-    if (p->max <= m->point.max && hopeless * msri_cost(p->integrator, &work) < m->cost) return true;
-  }
+  for (size_t i = 0; i < s->made->n; i++)
+    if (s->made->point[i].max <= m->point.max && hopeless * s->cost[i] < m->cost) return true;
   return false;
 }
 
@@ -94,6 +93,15 @@ static msr_status measure(study *s, const msr_plan_options *options, msri_measur
                            &m->point.seconds, err);
 }
 
+static msr_status keep(study *s, const msri_measured *m, msr_error *err) {
+  const size_t n = s->made->n;
+  double *cost = msri_grow(s->cost, &s->costs, n + 1, sizeof *cost, "the points", err);
+  if (!cost) return MSR_ENOMEM;
+  s->cost = cost;
+  cost[n] = m->cost;
+  return msri_result_add(s->made, &m->point, err);
+}
+
 /* One run of the ladder. A method that doesn't take the scene has no points; nor has a run that is
  * stopped before it has a time. */
 static msr_status climb(study *s, msri_ladder *ladder, msr_error *err) {
@@ -106,7 +114,7 @@ static msr_status climb(study *s, msri_ladder *ladder, msr_error *err) {
   ladder->done = status == MSR_EUSAGE || over;
   if (ladder->done) status = MSR_OK;
   const bool timed = m.point.seconds >= 0, unstable = !ladder->done && !m.point.stable;
-  if (status == MSR_OK && (timed || unstable)) status = msri_result_add(s->made, &m.point, err);
+  if (status == MSR_OK && (timed || unstable)) status = keep(s, &m, err);
   if (status == MSR_OK && !ladder->done)
     go_on(s, ladder, &m, msri_watch_elapsed(&s->setting.watch) - start);
   return status;
@@ -163,6 +171,7 @@ static void close(study *s) {
   msri_reference_clear(&s->reference);
   msri_setting_close(&s->setting);
   free(s->ladder);
+  free(s->cost);
 }
 
 msr_status msr_accuracy_study(const msr_scene *scene, const msr_accuracy_options *options,

@@ -1,15 +1,17 @@
 /* trial.c - a run under way. */
 #include "accuracy/trial.h"
 
-double msri_cost(const msr_integrator *integrator, const msr_work *work) {
-  const double order = integrator->order;
-  const double overhead = integrator->adaptive ? order * order / 12 : 0;
-  return (double)work->evaluations + overhead * (double)work->steps;
-}
-
 double msri_trial_cost(const msr_state *state) {
-  return msri_cost(state->plan->figures.integrator,
-                   &(msr_work){state->work.steps, state->evaluations});
+  const msr_plan *plan = state->plan;
+  const double order = plan->figures.integrator->order;
+  double cost = 0;
+  for (size_t e = 0; e < plan->n_effects && plan->effect[e].on; e++) {
+    const msr_force *force = plan->effect[e].force;
+    const bool outer = force && force->conservative && force != &msr_force_springs;
+    if (!outer) cost += (double)state->calls[e];
+  }
+  if (plan->figures.integrator->adaptive) cost += order * order / 12 * (double)state->work.steps;
+  return cost;
 }
 
 msr_status msri_trial_open(msri_setting *setting, const msr_plan_options *options,

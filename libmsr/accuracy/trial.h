@@ -4,10 +4,10 @@
 
 #include "accuracy/setting.h"
 
-/* What a run has cost so far, in evaluations of one without overhead. An adaptive step has as many
- * operations on vectors beside its evaluations as order^2 / 12 evaluations take on a lattice,
+/* What a run has cost so far, in calls of a force on all masses at once: of each force that is on,
+ * and of contacts, but for outer potentials (gravity, pushes), which take next to nothing. An
+ * adaptive step has as many operations on vectors beside as order^2 / 12 calls take on a lattice,
  * measured for those of GSL; others have few. */
-double msri_cost(const msr_integrator *integrator, const msr_work *work);
 double msri_trial_cost(const msr_state *state);
 
 /* A run under way. */

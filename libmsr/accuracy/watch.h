@@ -10,7 +10,7 @@ typedef struct msri_watch {
   double share;          /* of the budget, after which what is under way must end */
   double looked;         /* at the clock, last */
   uint64_t left, stride; /* substeps until the next look, between looks */
-  double most;           /* cost of what is under way at which it is stopped: msri_cost */
+  double most;           /* msri_trial_cost at which what is under way is stopped */
   bool costly;           /* it was stopped because it took more */
   msr_status status;     /* what the caller's poll returned */
   bool over;             /* late, or the caller said so: what is under way has been stopped */
