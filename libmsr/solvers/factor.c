@@ -62,18 +62,18 @@ void msri_stiffness_factorise(msri_stiffness *a) {
   }
 }
 
-double msri_stiffness_precondition(const msri_stiffness *a, const msri_pair *r, msri_pair *z) {
+double msri_stiffness_precondition(const msri_stiffness *a, const msri_vector *r, msri_vector *z) {
   const uint32_t *begin = a->graph->begin, *end = a->graph->end;
   const size_t n = a->graph->n;
   double rz = 0;
   memcpy(z, r, n * sizeof *z);
   for (size_t i = 0; i < n; i++) {
-    const msri_pair y = z[i];
+    const msri_vector y = z[i];
     for (size_t p = begin[i]; p < begin[i + 1]; p++)
       z[end[p]] = msri_sum(z[end[p]], msri_square_times(a->lower[p], y));
   }
   for (size_t i = n; i-- > 0;) {
-    msri_pair y = msri_block_times(a->pivot[i], z[i]);
+    msri_vector y = msri_block_times(a->pivot[i], z[i]);
     for (size_t p = begin[i]; p < begin[i + 1]; p++)
       y = msri_sum(y, msri_square_times_from_left(a->lower[p], z[end[p]]));
     z[i] = y;

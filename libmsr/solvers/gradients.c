@@ -13,32 +13,33 @@ static void start(msri_stiffness *a, const double *r) {
   const size_t n = a->graph->n;
   for (size_t i = 0; i < n; i++) {
     const double m = a->m[i * a->m_stride];
-    a->residual[i] = (msri_pair){m * r[i], m * r[n + i]};
+    a->residual[i] = (msri_vector){m * r[i], m * r[n + i]};
   }
   memset(a->x, 0, n * sizeof *a->x);
 }
 
 /* y = A p; returns p.y */
-static double multiply(const msri_stiffness *a, const msri_pair *p, msri_pair *y) {
+static double multiply(const msri_stiffness *a, const msri_vector *p, msri_vector *y) {
   const uint32_t *begin = a->graph->begin, *end = a->graph->end;
   const size_t n = a->graph->n;
   double py = 0;
   for (size_t i = 0; i < n; i++) {
     const double m = a->m[i * a->m_stride];
-    y[i] = (msri_pair){m * p[i].x, m * p[i].y};
+    y[i] = (msri_vector){m * p[i].x, m * p[i].y};
   }
   for (size_t s = 0; s < a->springs->n_anchors; s++) {
     const size_t i = a->springs->anchor[s].i;
     y[i] = msri_sum(y[i], msri_block_times(a->anchor[s], p[i]));
   }
   for (size_t i = 0; i < n; i++) {
-    const msri_pair pi = p[i];
-    msri_pair sum = y[i];
+    const msri_vector pi = p[i];
+    msri_vector sum = y[i];
     for (size_t s = begin[i]; s < begin[i + 1]; s++) {
       const size_t j = end[s];
-      const msri_pair f = msri_block_times(a->tie[s], (msri_pair){pi.x - p[j].x, pi.y - p[j].y});
+      const msri_vector f =
+          msri_block_times(a->tie[s], (msri_vector){pi.x - p[j].x, pi.y - p[j].y});
       sum = msri_sum(sum, f);
-      y[j] = (msri_pair){y[j].x - f.x, y[j].y - f.y};
+      y[j] = (msri_vector){y[j].x - f.x, y[j].y - f.y};
     }
     y[i] = sum;
     py += msri_product(pi, sum);
@@ -48,20 +49,20 @@ static double multiply(const msri_stiffness *a, const msri_pair *p, msri_pair *y
 
 /* x += w p, residual -= w y; is |M^-1 residual| <= tolerance |x| now? */
 static bool advance(msri_stiffness *a, double w, double tolerance) {
-  msri_pair *restrict x = a->x, *restrict r = a->residual;
-  const msri_pair *restrict p = a->direction, *restrict y = a->image;
+  msri_vector *restrict x = a->x, *restrict r = a->residual;
+  const msri_vector *restrict p = a->direction, *restrict y = a->image;
   double rr = 0, xx = 0;
   for (size_t i = 0; i < a->graph->n; i++) {
-    x[i] = (msri_pair){x[i].x + w * p[i].x, x[i].y + w * p[i].y};
-    r[i] = (msri_pair){r[i].x - w * y[i].x, r[i].y - w * y[i].y};
+    x[i] = (msri_vector){x[i].x + w * p[i].x, x[i].y + w * p[i].y};
+    r[i] = (msri_vector){r[i].x - w * y[i].x, r[i].y - w * y[i].y};
     xx += msri_product(x[i], x[i]);
     rr += a->weight[i * a->m_stride] * msri_product(r[i], r[i]);
   }
   return rr <= tolerance * tolerance * xx;
 }
 
-static void turn(size_t n, double w, const msri_pair *restrict z, msri_pair *restrict p) {
-  for (size_t i = 0; i < n; i++) p[i] = (msri_pair){z[i].x + w * p[i].x, z[i].y + w * p[i].y};
+static void turn(size_t n, double w, const msri_vector *restrict z, msri_vector *restrict p) {
+  for (size_t i = 0; i < n; i++) p[i] = (msri_vector){z[i].x + w * p[i].x, z[i].y + w * p[i].y};
 }
 
 /* Rounding can make the curvature vanish near the solution; at the start only nonsense does. */

@@ -23,7 +23,7 @@ static size_t weights(size_t n, size_t m_stride) { return m_stride ? n : 1; }
 
 size_t msri_stiffness_bytes(const msri_graph *graph, size_t anchors, size_t m_stride) {
   return graph->pairs * (sizeof(msri_block) + sizeof(msri_square)) +
-         (anchors + graph->n) * sizeof(msri_block) + 4 * graph->n * sizeof(msri_pair) +
+         (anchors + graph->n) * sizeof(msri_block) + 4 * graph->n * sizeof(msri_vector) +
          weights(graph->n, m_stride) * sizeof(double);
 }
 

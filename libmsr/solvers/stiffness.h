@@ -18,7 +18,7 @@ typedef struct msri_stiffness {
   msri_block *anchor; /* [n_anchors]: and to fixed points */
   msri_block *pivot;  /* [n]: D^-1 of the factors L D L^T */
   msri_square *lower; /* [graph->pairs]: -L below its diagonal of ones */
-  msri_pair *x, *residual, *direction, *image; /* [n]: of conjugate gradients */
+  msri_vector *x, *residual, *direction, *image; /* [n]: of conjugate gradients */
 } msri_stiffness;
 
 /* Bytes of its memory, and the object in it. The masses and springs of the view must outlive it. */
@@ -33,6 +33,6 @@ msr_status msri_stiffness_solve(msri_stiffness *a, const double *r, double toler
 /* Parts of these. */
 void msri_stiffness_factorise(msri_stiffness *a);
 /* z = (L D L^T)^-1 r; returns r.z */
-double msri_stiffness_precondition(const msri_stiffness *a, const msri_pair *r, msri_pair *z);
+double msri_stiffness_precondition(const msri_stiffness *a, const msri_vector *r, msri_vector *z);
 
 #endif
