@@ -38,7 +38,7 @@ const option all_options[] = {
      &a_substeps, FIELD(substeps)},
     {0, "atol", "TOL", "error of an adaptive step, in px and px/s (1e-6)", FOR_RUNS, &a_positive,
      FIELD(atol)},
-    {0, "rtol", "TOL", "added to it: a share of each number (0)", FOR_RUNS, &a_positive,
+    {0, "rtol", "TOL", "added to it: a share of the largest number (0)", FOR_RUNS, &a_positive,
      FIELD(rtol)},
     {0, "impacts", "kept|located", "at supports: energy kept, or order 2 (kept)", FOR_RUNS, &a_rule,
      FIELD(impacts)},

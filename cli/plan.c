@@ -56,7 +56,7 @@ static void print_step(const msr_plan_figures *f) {
   puts(f->integrator->adaptive ? ", divided as errors ask for" : "");
   if (f->integrator->adaptive) {
     label("tolerance");
-    printf("%.3g px and px/s, and %.3g of each number, a step\n", f->atol, f->rtol);
+    printf("%.3g px and px/s, and %.3g of the largest, a step\n", f->atol, f->rtol);
   }
   label("stable step");
   if (isinf(f->stable_step)) {

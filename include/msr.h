@@ -276,15 +276,16 @@ typedef struct msr_system {
   /* The mean acceleration from q0 to q1 whose work is exactly what the potentials lose (discrete
    * gradient), what has no potential taken at time t in the middle. NULL: a in the middle. */
   msr_status (*between)(void *self, double t, const double *q0, const double *q1, double *a);
-  /* Prepares solve for A = 1 - c da/dq at (t, q1) or, if q0 isn't NULL, with twice the derivative by
-   * q1 of what between gives in the place of da/dq. */
-  msr_status (*linearise)(void *self, double t, const double *q0, const double *from, const double *q1, double c);
+  /* Prepares solve for A = 1 - c da/dq at (t, q1) or, if q0 isn't NULL, with twice the derivative
+   * by q1 of what between gives in the place of da/dq. */
+  msr_status (*linearise)(void *self, double t, const double *q0, const double *from,
+                          const double *q1, double c);
   /* x[n] with |A x - r| <= tolerance |r|; da/dq may be what is near it and makes A positive.
    * Both NULL: implicit methods take differences of a. */
   msr_status (*solve)(void *self, const double *r, double tolerance, double *x);
-  /* Adaptive methods take a step back if its estimated error is larger than atol + rtol |q| in q, or
-   * atol + rtol |v| in v with times in seconds, |.| being the largest coordinate. Both finite, 0 or
-   * more, or MSR_EUSAGE; both 0: atol 1e-6. */
+  /* Adaptive methods take a step back if its estimated error is larger than atol + rtol |q| in q,
+   * or atol + rtol |v| in v with times in seconds, |.| being the largest coordinate. Both finite, 0
+   * or more, or MSR_EUSAGE; both 0: atol 1e-6. */
   double atol, rtol;
 } msr_system;
 
@@ -365,12 +366,13 @@ MSR_API extern const msr_integrator msr_integrator_kahan_li_6;
 MSR_API extern const msr_integrator msr_integrator_kahan_li_8;
 MSR_API extern const msr_integrator msr_integrator_rk4;
 
-/* Adaptive, explicit, by GSL (odeiv2). Errors after some periods of the motion are of about atol,
- * rk8pd's a tenth; through supports they are those of the rule of impact and of the steps taken.
+/* Adaptive, explicit, by GSL (odeiv2). After a second errors are of about atol, rk8pd's a tenth of
+ * it; through supports they are those of the rule of impact and of the steps taken.
  * MSR_EUNSTABLE where a isn't finite or no step is small enough, and after 10^7 tries in a step;
- * q and v are then as before. GSL's memory isn't in msr_plan_figures: 16 to 30 times that of x, y,
- * vx and vy [masses]; should it be lacking, MSR_ENOMEM, or if another thread takes what was left in
- * that very moment, what GSL's handler of errors does: set one. */
+ * q and v are then as before. GSL's memory isn't in msr_plan_figures: of rkf45 and rkck 8 times
+ * that of x, y, vx and vy [masses], of rk8pd 15, of msadams 33 times. Where it's lacking,
+ * MSR_ENOMEM; but if another thread takes what was left in that very moment, GSL's handler of
+ * errors is called, which unless the program has set one ends it. */
 MSR_API extern const msr_integrator msr_integrator_rkf45;
 MSR_API extern const msr_integrator msr_integrator_rkck;
 MSR_API extern const msr_integrator msr_integrator_rk8pd;
@@ -490,8 +492,8 @@ typedef struct msr_plan_options {
 
 /* Compiles the scene, which may be freed after; the integrator must outlive the plan. `options` may
  * be NULL. MSR_EUSAGE if the integrator lacks name, summary or step, or a tolerance isn't finite or
- * is negative; MSR_EINPUT if no number of
- * substeps is enough; MSR_ENOMEM; or what force->prepare or force->rates returns. */
+ * is negative; MSR_EINPUT if no number of substeps is enough; MSR_ENOMEM; or what force->prepare or
+ * force->rates returns. */
 MSR_API msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *options,
                                    msr_plan **plan, msr_error *err);
 
@@ -547,7 +549,8 @@ MSR_API msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr
 
 MSR_API void msr_state_free(msr_state *state);
 
-/* Makes `to` what `from` is; both are of the same plan. */
+/* Makes `to` what `from` is; both are of the same plan. What follows is the same, too, unless the
+ * integrator remembers. */
 MSR_API void msr_state_copy(msr_state *to, const msr_state *from);
 
 /* 64-bit hash of the bits of t, x, y, vx, vy (FNV-1a over 8-byte words); the same on every machine
@@ -556,7 +559,7 @@ MSR_API uint64_t msr_state_hash(const msr_state *state);
 
 /* Writes t, x, y, vx, vy, the iterations, contacts and frames so far to a file, and reads them back
  * into a state of a plan with the same masses, DT and substeps: what follows has the same bits as
- * if it had never been saved. MSR_EIO, MSR_EINPUT. */
+ * if it had never been saved, unless the integrator remembers. MSR_EIO, MSR_EINPUT. */
 MSR_API msr_status msr_state_save(const msr_state *state, const char *path, msr_error *err);
 MSR_API msr_status msr_state_load(msr_state *state, const char *path, msr_error *err);
 
