@@ -41,7 +41,7 @@ static const double rounding = 1e-12;
 
 static void assert_errors_are_true(const exact *e) {
   size_t n;
-  msr_accuracy *made = study(e->make(), NULL);
+  msr_accuracy *made = study(e->make(), &(msr_accuracy_options){.finest = 1e-8});
   const msr_accuracy_figures f = msr_accuracy_describe(made);
   const msr_accuracy_point *p = msr_accuracy_points(made, &n);
   assert_true(n > 30);
@@ -159,7 +159,7 @@ static void unstable_points_are_shown(void **unused) {
   size_t n;
   msr_scene *scene = make_chain();
   must(msr_scene_set_times(scene, 0.4, 5, 5, &why));
-  msr_accuracy *made = study(scene, &(msr_accuracy_options){METHODS(verlet)});
+  msr_accuracy *made = study(scene, &(msr_accuracy_options){METHODS(verlet), .finest = 1e-5});
   const msr_accuracy_point *p = msr_accuracy_points(made, &n);
   assert_true(n > 3);
   assert_false(p[0].stable);
@@ -204,7 +204,7 @@ static void studies_repeat(void **unused) {
   msr_accuracy *made[2];
   const msr_accuracy_point *p[2];
   for (int i = 0; i < 2; i++) {
-    made[i] = study(make_chain(), NULL);
+    made[i] = study(make_chain(), &(msr_accuracy_options){.finest = 1e-6});
     p[i] = msr_accuracy_points(made[i], &n[i]);
   }
   assert_int_equal(n[0], n[1]);
@@ -271,7 +271,8 @@ static msr_scene *whip(void) {
 
 static void chaos_has_a_horizon(void **unused) {
   (void)unused;
-  msr_accuracy *made = study(whip(), &(msr_accuracy_options){METHODS(three), .finest = 1e-3});
+  static const msr_integrator *const one[] = {&msr_integrator_srkn6};
+  msr_accuracy *made = study(whip(), &(msr_accuracy_options){METHODS(one), .finest = 1});
   const msr_accuracy_figures f = msr_accuracy_describe(made);
   assert_near(f.until, 40, 1e-9);
   assert_true(f.horizon > 2 && f.horizon < 30);

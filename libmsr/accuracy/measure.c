@@ -169,7 +169,7 @@ static void add(times *t, double seconds) {
 
 /* One run if it is long; else three at least, until two agree on the least, or time is up. */
 static bool enough(const times *t, double total) {
-  const double longest = 2.5 * total, shortest = total / 20, alike = 1.01;
+  const double longest = 2.5 * total, shortest = total / 50, alike = 1.01;
   if (t->runs == 0 || t->spent > longest) return t->runs > 0;
   if (t->runs < 3 || t->spent < shortest) return false;
   return t->second < alike * t->least || t->spent > total;

@@ -2,7 +2,7 @@
  *
  * The run that promises to take the fewest evaluations is always the next, so that coarse points
  * of all methods come first. A method is done when its error comes near the reference's own, or
- * near what is asked for, or when it takes a hundred times the work of another that is as good. */
+ * near what is asked for, or when it costs thirty times as much as another that is as good. */
 #include "accuracy/ladder.h"
 #include "accuracy/measure.h"
 #include "accuracy/result.h"
@@ -13,8 +13,8 @@
 static const msri_setting_defaults usual = {60, 32, 0};
 static const double reference_share = 0.25; /* of the budget */
 static const double default_finest = 1e-10; /* [px] */
-static const double parted = 1e-3;  /* where references differ by so much, they have parted [px] */
-static const double hopeless = 100; /* times the work of a method that is as good */
+static const double parted = 1e-3; /* where references differ by so much, they have parted [px] */
+static const double hopeless = 30; /* times the cost of a method that is as good */
 
 typedef struct study {
   msri_setting setting;
@@ -154,7 +154,7 @@ static void describe(study *s) {
 }
 
 static msr_status run(study *s, msr_error *err) {
-  const msri_reference_goal goal = {parted, s->finest / 4, 0, reference_share};
+  const msri_reference_goal goal = {parted, s->finest / 4, 0.05, reference_share};
   msr_status status = msri_reference_find(&s->setting, &goal, &s->reference, err);
   if (status == MSR_OK) status = msri_screens_open(&s->setting, &s->screens, err);
   if (status == MSR_OK) status = begin_ladders(s, err);

@@ -5,9 +5,8 @@
 #include "accuracy/setting.h"
 
 /* What a run has cost so far, in calls of a force on all masses at once: of each force that is on,
- * and of contacts, but for outer potentials (gravity, pushes), which take next to nothing. An
- * adaptive step has as many operations on vectors beside as order^2 / 12 calls take on a lattice,
- * measured for those of GSL; others have few. */
+ * and of contacts. Deterministic, and within a factor of 2 or so of what a clock would say: choices
+ * and plans don't depend on one. */
 double msri_trial_cost(const msr_state *state);
 
 /* A run under way. */

@@ -73,6 +73,7 @@ static msr_status iterate(msri_stiffness *a, double tolerance) {
   memcpy(a->direction, a->image, n * sizeof *a->direction);
   for (int k = 0; k < MOST_ITERATIONS; k++) {
     const double curvature = multiply(a, a->direction, a->image);
+    a->iterations++;
     if (!(rz > 0 && curvature > 0)) return k > 0 ? MSR_OK : MSR_EUNSTABLE;
     if (advance(a, rz / curvature, tolerance)) return MSR_OK;
     const double next = msri_stiffness_precondition(a, a->residual, a->image);
