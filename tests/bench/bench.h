@@ -14,7 +14,7 @@ extern "C" {
 typedef struct problem {
   double k, T;     /* stiffness; end of time [s] */
   double limit;    /* a run that takes longer is given up [s] */
-  double deadline; /* of the run under way, by clock_now() */
+  double deadline; /* of the run under way, by clock_now(false) */
   unsigned evaluations;
   msr_scene *scene, *watched; /* the same; the latter stops when time is up */
   msr_plan *plan;
@@ -37,7 +37,10 @@ bool differentiate(problem *p, const double *y, double *dy);
 /* Largest distance between the masses of q and r, x and y each; infinite if one isn't a number. */
 double largest_distance(const double *q, const double *r);
 
-double clock_now(void);                 /* [s] */
+/* [s] of this process, so that others on the machine don't count; of the wall for what is done
+ * elsewhere. */
+double clock_now(bool elsewhere);
+
 void *need(size_t count, size_t size);  /* zeroed; ends the program if there is none */
 void bench_fail(const char *what, ...); /* ends the program */
 

@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <time.h>
 
 /* ---- Knobs */
 
@@ -13,10 +12,10 @@ static double run_once(const table *t, const method *m, double knob, double *sec
   problem *p = t->p;
   double *z = need(2 * p->n, sizeof *z), error = (double)INFINITY;
   void *object = m->open(m, p, knob);
-  const double begin = clock_now();
-  p->deadline = begin + p->limit;
+  const double begin = clock_now(m->elsewhere);
+  p->deadline = clock_now(false) + p->limit;
   if (object && m->run(object, z)) error = largest_distance(z, t->truth);
-  *seconds = clock_now() - begin;
+  *seconds = clock_now(m->elsewhere) - begin;
   if (object) m->close(object);
   free(z);
   return error;
@@ -91,23 +90,15 @@ void table_search(table *t) {
 
 /* ---- Times */
 
-/* [s] of this process's own, so that others on the machine don't count. */
-static double processor_now(const method *m) {
-  struct timespec now;
-  if (m->elsewhere) return clock_now();
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* Once, or for a millisecond. */
 static void time_point(const table *t, const method *m, point *x, double *z) {
-  const double patience = 1e-3, begin = processor_now(m);
+  const double patience = 1e-3, begin = clock_now(m->elsewhere);
   double now = begin;
   do {
     const double then = now;
     t->p->deadline = (double)INFINITY;
     m->run(x->object, z);
-    now = processor_now(m);
+    now = clock_now(m->elsewhere);
     if (x->repeats < MOST_REPEATS) x->time[x->repeats++] = (float)(now - then);
   } while (now - begin < patience);
   x->spent += now - begin;

@@ -13,9 +13,9 @@ enum { SIDE = 20, MASSES = SIDE * SIDE };
 
 static const double mass = 0.1, end = 1, pi = 3.14159265358979323846;
 
-double clock_now(void) {
+double clock_now(bool elsewhere) {
   struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(elsewhere ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &now);
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
@@ -76,7 +76,7 @@ static void spin(const double *q, double *v) {
 
 static bool in_time(problem *p) {
   enum { PERIOD = 256 };
-  return ++p->evaluations % PERIOD != 0 || clock_now() < p->deadline;
+  return ++p->evaluations % PERIOD != 0 || clock_now(false) < p->deadline;
 }
 
 /* A force that is none: it lets a method that chooses its own steps be stopped. */
