@@ -183,6 +183,19 @@ def trampoline():
     return p
 
 
+def pendulum():
+    p = Picture(120, 70)
+    p.paint(SUPPORT, box(60, 10, 1, 1))
+    p.paint(stripes(8, RED, YELLOW), box(61, 10, 40, 4))
+    return p
+
+
+def turn():
+    p = Picture(60, 60)
+    p.paint(bands(4, RED, YELLOW), box(20, 20, 20, 20))
+    return p
+
+
 # Name: what it shows; options of msr; GRAVITE, MASSE, TENSION_RESSORT, NB_ITERATIONS, NB_IMAGES.
 # DT is 0.005 s; all but the assignment's make 25 images per second.
 SCENES = {
@@ -203,12 +216,16 @@ SCENES = {
               "--attach --wind 10 --gust 35 --gust-time 0.5", 60, 0.1, 12000, 2400, 300),
     letters: ("three letters tumble through pegs",
               "--neighbours 8 --restitution 0.6", 60, 0.1, 40000, 3000, 375),
+    pendulum: ("a stiff rod swings from one pixel: slow motion, fast vibrations",
+               "--neighbours 8 --attach", 60, 0.1, 1500000000, 400, 50),
     rope: ("two ropes swing about one nail, undamped: chaos",
            "--attach", 200, 0.1, 30000, 2400, 300),
     stairs: ("a ball rolls down a ramp and stairs, by friction",
              "--neighbours 8 --friction 0.4 --restitution 0.6", 60, 0.1, 12000, 3200, 400),
     trampoline: ("a ball sewn to a trampoline bounces, undamped",
                  "--neighbours 8 --attach", 60, 0.1, 20000, 2400, 300),
+    turn: ("a block that nothing holds or hits, turned by two forces, undamped",
+           "--neighbours 8 --push 20,20,150,0 --push 39,39,-150,0", 0, 0.1, 1500, 400, 50),
 }
 NAMES = ("GRAVITE", "MASSE", "TENSION_RESSORT", "NB_ITERATIONS", "NB_IMAGES")
 
