@@ -10,14 +10,18 @@ methods = system("awk -F, '!/^#|^method,/ { if ($1 != last) print last = $1 }' "
 own = real(system("sed -n 's/^# reference error .*: //p' ".csv))
 right = real(system("awk -F, '!/^#|^method,/ && $4 == 1 && $9 > most { most = $9 } END { print most + 0 }' ".csv))
 
-# Families: splittings and compositions are drawn through, Runge-Kutta and Adams dashed, implicit dotted.
-adaptive = 'rk4 rkf45 rkck rk8pd msadams '
-implicit = 'backward-euler implicit-midpoint sdirk2 energy-momentum '
-dashes(m) = strstrt(adaptive, m.' ') ? 2 : strstrt(implicit, m.' ') ? 3 : 1
+# A method looks the same in every figure. Splittings and compositions are drawn through, Runge-Kutta
+# and Adams dashed, implicit methods dotted.
+through = 'symplectic-euler verlet pefrl srkn4 srkn6 kahan-li-6 kahan-li-8 '
+dashed = 'euler rk4 rkf45 rkck rk8pd msadams '
+dotted = 'backward-euler implicit-midpoint sdirk2 energy-momentum '
+known = through.dashed.dotted
+place(m) = sum [i = 1 : words(known)] (word(known, i) eq m ? i : 0)
+dashes(m) = strstrt(' '.dashed, ' '.m.' ') ? 2 : strstrt(' '.dotted, ' '.m.' ') ? 3 : 1
 array colour[9] = [0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9, 0x000000, 0xb8a800, 0x8c510a]
 array form[7] = [7, 5, 9, 11, 13, 6, 4]
-tint(i) = colour[(i - 1) % 9 + 1]
-mark(i) = form[(i - 1) % 7 + 1]
+tint(m) = colour[(place(m) + 8) % 9 + 1]
+mark(m) = form[(place(m) + 6) % 7 + 1]
 
 set logscale xy
 set format '10^{%L}'
@@ -34,13 +38,12 @@ set label "the reference's own error" at own, graph 0.98 right rotate by 90 offs
 shown(m, error) = strcol(1) eq m && column(4) == 1 ? error : NaN
 front = "< awk -F, '!/^#|^method,/ && $13 == 1 { print $9 \",\" 1e3 * $7 }' ".csv." | sort -g"
 # At the right edge, at the time that its next stable run foretells.
-unstable = "< awk -F, '!/^#|^method,/ { if ($4 == 0) { m = $1; s = $2 } else if ($1 == m) " \
-  ."{ print m \",\" 1e3 * $7 * s / $2; m = \"\" } }' ".csv
-place(m) = sum [i = 1 : words(methods)] (word(methods, i) eq m ? i : 0)
+unstable = "< awk -F, 'BEGIN { print \"-,NaN\" } !/^#|^method,/ " \
+  ."{ if ($4 == 0) { m = $1; s = $2 } else if ($1 == m) { print m \",\" 1e3 * $7 * s / $2; m = \"\" } }' ".csv
 plot front using 1:2 with lines linewidth 8 linecolor '#d0d0d0' title 'Pareto front', \
   for [i = 1 : words(methods)] csv using (shown(word(methods, i), $9)):(1e3 * $7) \
-    with linespoints linewidth 1.3 pointsize 0.5 linecolor rgb tint(i) pointtype mark(i) \
-    dashtype dashes(word(methods, i)) title word(methods, i), \
-  unstable using (right * 3):2:(tint(place(strcol(1)))) with points pointtype 2 pointsize 0.7 \
+    with linespoints linewidth 1.3 pointsize 0.5 linecolor rgb tint(word(methods, i)) \
+    pointtype mark(word(methods, i)) dashtype dashes(word(methods, i)) title word(methods, i), \
+  unstable using (right * 3):2:(tint(strcol(1))) with points pointtype 2 pointsize 0.7 \
     linecolor rgb variable notitle, \
   NaN with points pointtype 2 pointsize 0.7 linecolor '#000000' title 'unstable'
