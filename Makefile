@@ -241,7 +241,7 @@ bench-accuracy: $(BENCH) $(BENCH_RHS)
 # ---- Report --------------------------------------------------------------------------------------
 
 STUDIES = turn assignment pendulum
-CSV     = $(STUDIES:%=docs/report/%.csv)
+CSV     = $(STUDIES:%=docs/report/%.csv) docs/report/impacts.csv
 REPORT  = $(BUILD)/report
 
 ## report: docs/report as build/report/report.pdf, from the CSVs there
@@ -270,12 +270,13 @@ study = $(BUILD)/msr accuracy examples/scenes/$(1).ppm examples/scenes/$(1).conf
         $$(sed -n 's/^. msr [^ ]* [^ ]*//p' examples/scenes/$(1).conf) $(2) \
         --csv docs/report/$(1).csv --plot $(REPORT)/$(1).svg
 
-## figures: the report's three studies anew: CSVs in docs/report/, SVGs in build/report/
+## figures: the report's studies anew, a quarter of an hour: docs/report/*.csv, build/report/*.svg
 figures: all
 	@mkdir -p $(REPORT)
 	$(call study,turn,--budget 120)
 	$(call study,assignment,--until 2 --budget 300)
 	$(call study,pendulum,--until 1 --budget 300)
+	sh docs/report/impacts.sh $(BUILD)/msr > docs/report/impacts.csv
 
 # ---- Installing ----------------------------------------------------------------------------------
 

@@ -1,5 +1,6 @@
-# numbers.awk - from the CSVs that `msr accuracy` wrote to LaTeX: for each file NAME.csv the commands
-# \NAMEmachine, \NAMEdate and so on, and \cheapest, the rows of the table of cheapest methods.
+# numbers.awk - the CSVs of this directory as LaTeX. For each NAME.csv that `msr accuracy` wrote the
+# commands \NAMEmachine, \NAMEdate and so on; \cheapest, the rows of the table of cheapest methods;
+# \impacts, those of the table of energies that impacts.sh wrote to impacts.csv.
 function tex(text) {
   gsub(/_/, "\\_", text)
   gsub(/--/, "-{}-", text)
@@ -15,11 +16,17 @@ function power(value,  parts) {
 
 function three(value) { return sprintf(value < 100 ? "%.3g" : "%.0f", value) }
 
+# "0" for what is rounding.
+function percent(value) {
+  value *= 100
+  return value * value < 1e-16 ? "0" : sprintf(value < 10 ? "$%+.2g\\,\\%%$" : "$%+.0f\\,\\%%$", value)
+}
+
 function define(name, text) { printf "\\newcommand{\\%s%s}{%s}\n", scene, name, text }
 
-# The fastest of those that are as accurate as asked.
+# The fastest of those that are as accurate as asked, the reference's own error included.
 function consider(i) {
-  if ($9 > 10 ^ -exponent[i] || ((i, scene) in least && $7 >= least[i, scene])) return
+  if ($9 + own > 10 ^ -exponent[i] || ((i, scene) in least && $7 >= least[i, scene])) return
   least[i, scene] = $7
   method[i, scene] = $1 ($3 != "" ? ", $" sprintf("10^{%.0f}", log($3) / log(10)) "$" : \
                          $2 > 1 ? "\\,\\texttimes\\,$" $2 "$" : "")
@@ -41,7 +48,7 @@ FNR == 1 {
   scene = FILENAME
   sub(/.*\//, "", scene)
   sub(/\.csv$/, "", scene)
-  order[++scenes] = scene
+  if (scene != "impacts") order[++scenes] = scene
 }
 
 /^# [a-z A-Z[\]]+: / {
@@ -54,15 +61,23 @@ FNR == 1 {
   if (key ~ /^(masses|springs)$/) define(key, value)
   if (key == "horizon [s]") define("horizon", three(value))
   if (key == "until [s]") define("until", three(value))
-  if (key == "reference error [px]") define("own", power(value))
+  if (key == "reference error [px]") define("own", power(own = value))
 }
 
-!/^#/ && $1 != "method" && $4 == 1 {
+scene == "impacts" && /^(kept|located),/ {
+  if (!($1 in change)) rule[++rules] = $1
+  change[$1] = change[$1] " & " percent($4) " .. " percent($5) ($3 < 99 ? ", stopped at " $3 "~s" : "")
+}
+
+scene != "impacts" && !/^#/ && $1 != "method" && $4 == 1 {
   for (i = 1; i <= n; i++) consider(i)
 }
 
 END {
   print "\\newcommand{\\cheapest}{%"
   for (i = 1; i <= n; i++) print "$" (exponent[i] < 3 ? 10 ^ -exponent[i] : "10^{-" exponent[i] "}") "$" cells(i) " \\\\"
+  print "}"
+  print "\\newcommand{\\impacts}{%"
+  for (i = 1; i <= rules; i++) print "\\emph{" rule[i] "}" change[rule[i]] " \\\\"
   print "}"
 }
