@@ -238,6 +238,46 @@ $(BENCH_RHS): $(RHS_OBJ) $(BUILD)/libmsr.a
 bench-accuracy: $(BENCH) $(BENCH_RHS)
 	@$(BENCH) tests/bench/scipy_peer.py $(BENCH_RHS)
 
+# ---- Report --------------------------------------------------------------------------------------
+
+STUDIES = turn assignment pendulum
+CSV     = $(STUDIES:%=docs/report/%.csv) docs/report/impacts.csv
+REPORT  = $(BUILD)/report
+
+## report: docs/report as build/report/report.pdf, from the CSVs there
+report: $(REPORT)/report.pdf
+
+# Twice, for the references; TEXINPUTS is where it finds figures and numbers.
+$(REPORT)/report.pdf: docs/report/report.tex $(REPORT)/numbers.tex $(STUDIES:%=$(REPORT)/%.pdf)
+	$(if $(V),,@printf '  %-5s %s\n' TEX $@;) for pass in 1 2; do \
+	  TEXINPUTS=$(REPORT): pdflatex -interaction=nonstopmode -halt-on-error \
+	    -output-directory=$(REPORT) $< > $(REPORT)/log || { tail -n 20 $(REPORT)/log >&2; exit 1; }; \
+	done
+	@! grep -A 2 -E 'undefined|Overfull' $(REPORT)/report.log >&2
+	@pages=$$(pdfinfo $@ | sed -n 's/^Pages: *//p'); \
+	[ $$pages -ge 5 ] && [ $$pages -le 10 ] || { echo "$@: $$pages pages, not 5 to 10" >&2; exit 1; }
+
+$(REPORT)/numbers.tex: docs/report/numbers.awk $(CSV) | $(FIRST)
+	@mkdir -p $(@D)
+	$(call show,AWK)awk -f $< $(CSV) > $@
+
+$(REPORT)/%.pdf: docs/report/%.csv docs/report/figure.gp | $(FIRST)
+	@mkdir -p $(@D)
+	$(call show,PLOT)gnuplot -c docs/report/figure.gp $< $@
+
+# A study is told what the scene's conf says.
+study = $(BUILD)/msr accuracy examples/scenes/$(1).ppm examples/scenes/$(1).conf \
+        $$(sed -n 's/^. msr [^ ]* [^ ]*//p' examples/scenes/$(1).conf) $(2) \
+        --csv docs/report/$(1).csv --plot $(REPORT)/$(1).svg
+
+## figures: the report's studies anew, a quarter of an hour: docs/report/*.csv, build/report/*.svg
+figures: all
+	@mkdir -p $(REPORT)
+	$(call study,turn,--budget 120)
+	$(call study,assignment,--until 2 --budget 300)
+	$(call study,pendulum,--until 1 --budget 300)
+	sh docs/report/impacts.sh $(BUILD)/msr > docs/report/impacts.csv
+
 # ---- Installing ----------------------------------------------------------------------------------
 
 ## install: to PREFIX=/usr/local, under DESTDIR if given
@@ -271,7 +311,7 @@ help:
 
 .PHONY: all examples everything deps demo test check check-gcc check-clang check-san \
         check-valgrind check-tidy check-cppcheck check-format format coverage fuzz run-fuzzers \
-        bench-accuracy install uninstall clean help
+        bench-accuracy report figures install uninstall clean help
 FORCE:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(call object,$(SOURCES)))

@@ -1,7 +1,7 @@
 #!/bin/sh
 # mk-deps.sh - installs what the goals of `make deps GOALS` need and isn't there; if no goal is given
-# all but the benchmark's peers. It needs neither network nor root when nothing is missing. Debian and Ubuntu only; on
-# other systems it says what to install.
+# all but the benchmark's peers and LaTeX for the report. It needs neither network nor root when
+# nothing is missing. Debian and Ubuntu only; on other systems it says what to install.
 set -eu
 cc=${CC:-cc}
 
@@ -37,6 +37,9 @@ bench    | header cvode/cvode.h                | libsundials-dev | sundials-deve
 bench    | header boost/version.hpp            | libboost-dev    | boost-devel           | boost        | boost
 bench    | scipy                               | python3-scipy   | python3-scipy         | python-scipy | scipy
 fuzz     | fuzzer                              | libclang-rt-dev | compiler-rt           | compiler-rt  | llvm
+report   | has gnuplot                         | gnuplot-nox     | gnuplot               | gnuplot      | gnuplot
+report   | kpsewhich booktabs.sty lmodern.sty  | texlive-latex-recommended lmodern | texlive-collection-latexrecommended texlive-lm | texlive-latexrecommended texlive-fontsrecommended | texlive
+report   | has pdfinfo                         | poppler-utils   | poppler-utils         | poppler      | poppler
 '
 
 groups=build
@@ -46,6 +49,7 @@ for goal in "${@:-everything}"; do
   test) groups="$groups test" ;;
   bench-accuracy) groups="$groups bench" ;;
   check | coverage | fuzz) groups="$groups test $goal" ;;
+  report | figures) groups="$groups report" ;;
   *) groups='build test check coverage fuzz' ;;
   esac
 done

@@ -31,9 +31,11 @@ strip flag       flag       4x1  0 55 100 200
 strip jelly      jelly      4x1  0 50 80 120
 strip laundry    laundry    4x1  0 50 90 160
 strip letters    letters    4x1  0 50 120 374
+strip pendulum   pendulum   4x1  0 15 30 42
 strip rope       rope       4x1  0 30 60 120
 strip stairs     stairs     4x1  0 100 200 300
 strip trampoline trampoline 4x1  0 40 75 180
+strip turn       turn       4x1  0 12 24 34
 
 # The guide's.
 "$msr" accuracy examples/scenes/rope.ppm examples/scenes/rope.conf --attach --until 0.2 \

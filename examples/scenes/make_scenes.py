@@ -183,8 +183,21 @@ def trampoline():
     return p
 
 
-# Name: what it shows; options of msr; GRAVITE, MASSE, TENSION_RESSORT, NB_ITERATIONS, NB_IMAGES.
-# DT is 0.005 s; all but the assignment's make 25 images per second.
+def pendulum():
+    p = Picture(120, 70)
+    p.paint(SUPPORT, box(60, 10, 1, 1))
+    p.paint(stripes(8, RED, YELLOW), box(61, 10, 40, 4))
+    return p
+
+
+def turn():
+    p = Picture(60, 60)
+    p.paint(bands(4, RED, YELLOW), box(20, 20, 20, 20))
+    return p
+
+
+# Name: what it shows; options of msr; GRAVITE, MASSE, TENSION_RESSORT, NB_ITERATIONS, NB_IMAGES, and
+# DT if it isn't 0.005 s. All but the assignment's make 25 images per second.
 SCENES = {
     assignment: ("the assignment's own parameters: a hammock, two loops and a block, undamped",
                  "", 9.8, 0.1, 1500, 20000, 800),
@@ -203,24 +216,28 @@ SCENES = {
               "--attach --wind 10 --gust 35 --gust-time 0.5", 60, 0.1, 12000, 2400, 300),
     letters: ("three letters tumble through pegs",
               "--neighbours 8 --restitution 0.6", 60, 0.1, 40000, 3000, 375),
+    pendulum: ("a stiff rod swings from one pixel: slow motion, fast vibrations",
+               "--neighbours 8 --attach", 60, 0.1, 1500000000, 100, 50, 0.02),
     rope: ("two ropes swing about one nail, undamped: chaos",
            "--attach", 200, 0.1, 30000, 2400, 300),
     stairs: ("a ball rolls down a ramp and stairs, by friction",
              "--neighbours 8 --friction 0.4 --restitution 0.6", 60, 0.1, 12000, 3200, 400),
     trampoline: ("a ball sewn to a trampoline bounces, undamped",
                  "--neighbours 8 --attach", 60, 0.1, 20000, 2400, 300),
+    turn: ("a block that nothing holds or hits, turned by two forces, undamped",
+           "--neighbours 8 --push 20,20,150,0 --push 39,39,-150,0", 0, 0.1, 1500, 400, 50),
 }
 NAMES = ("GRAVITE", "MASSE", "TENSION_RESSORT", "NB_ITERATIONS", "NB_IMAGES")
 
 
 def main(directory):
     for picture, (shows, options, *values) in SCENES.items():
-        name = picture.__name__
+        name, dt = picture.__name__, values.pop() if len(values) > len(NAMES) else 0.005
         picture().write(f"{directory}/{name}.ppm")
         with open(f"{directory}/{name}.conf", "w") as conf:
             print(f"# {shows[0].upper()}{shows[1:]}.", file=conf)
             print(f"# msr {name}.ppm {name}.conf {options}".rstrip(), file=conf)
-            for parameter, value in zip(("DT", *NAMES), (0.005, *values)):
+            for parameter, value in zip(("DT", *NAMES), (dt, *values)):
                 print(parameter, value, sep="\n", file=conf)
 
 
