@@ -93,8 +93,7 @@ static inline world deformed_with(const struct medium *m, double dt,
 
 static inline world deformed(const struct medium *m, const msr_integrator *integrator, double dt,
                              uint64_t substeps) {
-  return deformed_with(m, dt,
-                       &(msr_plan_options){.integrator = integrator, .substeps = substeps});
+  return deformed_with(m, dt, &(msr_plan_options){.integrator = integrator, .substeps = substeps});
 }
 
 #endif

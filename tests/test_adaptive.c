@@ -610,7 +610,7 @@ static int open_within(const msr_integrator *integrator, const msr_system *syste
     if (setrlimit(RLIMIT_AS, &(struct rlimit){most, most}) != 0) _exit(99);
     _exit((int)integrator->open(integrator, system, &object, NULL));
   }
-  int status;
+  int status = 0;
   assert_true(pid > 0 && waitpid(pid, &status, 0) == pid);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }

@@ -47,7 +47,7 @@ typedef struct course {
   msr_status status; /* of the acceleration */
 } course;
 
-static const uint64_t most_tries = 10 * 1000 * 1000; /* of steps, in an interval */
+static const uint64_t most_tries = 10000000; /* of steps, in an interval */
 
 /* ---- What GSL calls */
 
