@@ -72,7 +72,7 @@ static void print_step(const msr_plan_figures *f) {
 static void print_impacts(const msr_plan_figures *f) {
   static const char *const rules[] = {
       [MSR_IMPACTS_KEPT] = "kept: energy is kept, order 1 through a bounce",
-      [MSR_IMPACTS_LOCATED] = "located: order 2 through a bounce; many heat a stiff object"};
+      [MSR_IMPACTS_LOCATED] = "located: the order of the method through a bounce"};
   label("impacts");
   puts(rules[f->impacts]);
 }

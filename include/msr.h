@@ -263,8 +263,10 @@ typedef struct msr_system {
   /* Advances v by h under what depends on v alone, q and t held; backward: in adjoint order.
    * NULL: what depends on v, if anything does, is in a, and methods that split lose their order. */
   msr_status (*damp)(void *self, double t, double h, bool backward, const double *q, double *v);
-  /* q += h u, stopped by what is in the way, which reflects v; u may be v. `a` [n] bends the path,
-   * q + s u + s (s - h) a / 2 at a time s of it; NULL: it is straight.
+  /* q += h u, stopped by what is in the way, which reflects v; u may be v. `a` [n], the
+   * acceleration at the start, bends the path: it is at q + s u + s (s - h) a / 2 after a time s,
+   * and v is the velocity in its middle, to which half a kick by the acceleration at the end is
+   * still to come. If a is NULL the path is straight.
    * NULL: nothing is in the way. Integrators call msr_system_drift. */
   msr_status (*drift)(void *self, double h, const double *u, const double *a, double *q, double *v);
   /* What is in the way of a step of h from (q0, v0) to (q, v): it stops q and reflects v, and
@@ -329,7 +331,8 @@ typedef struct msr_integrator {
   bool conservative;     /* keeps the energy for any h, likewise */
   bool splits;           /* advances what depends on v by damp(), not through a */
   bool bounces;          /* sees to what is in the way itself: moves q by msr_system_drift alone, or
-                          * calls bounce(); else the library does after each step */
+                          * calls bounce(); else the library does after each step, and it does
+                          * where impacts are located and the method is adaptive */
   bool implicit;         /* solves equations: evaluations are as many as that takes */
   bool adaptive;         /* chooses its own steps within the interval, by atol and rtol */
   bool remembers;        /* more than (t, q, v): a copy of the state or a saved one begins anew, and
@@ -472,12 +475,16 @@ MSR_API msr_status msr_scene_mass_at(const msr_scene *scene, size_t column, size
 
 typedef struct msr_plan msr_plan;
 
-/* How a mass meets a support. */
+/* How a mass meets a support. Located, methods keep their order through isolated bounces: Verlet as
+ * it follows the path that the acceleration bends, the others as they end a step at each impact and
+ * begin another there, in a few tries. Where masses rest or come back within 4 steps, or more than
+ * 4 meet something one after the other in a step, those others have order 2 at best, 1 if forces
+ * depend on v. */
 typedef enum msr_impacts {
   MSR_IMPACTS_KEPT,   /* it keeps its old place for the step, and its velocity is reflected: order 1
                        * through a bounce, and energy is kept for ever so long */
-  MSR_IMPACTS_LOCATED /* it is reflected at the time when its path, bent by its acceleration, meets
-                       * the support: order 2; many impacts heat a stiff object */
+  MSR_IMPACTS_LOCATED /* it is reflected when its path meets the support; energy is kept nearly as
+                       * well by safe steps, and less above them */
 } msr_impacts;
 
 typedef struct msr_plan_options {
@@ -606,8 +613,8 @@ MSR_API uint64_t msr_state_calls(const msr_state *state, size_t effect);
 /* Collisions of masses with supports so far. */
 MSR_API uint64_t msr_state_contacts(const msr_state *state);
 
-/* Steps so far, those that an adaptive method chose included, and evaluations of the acceleration.
- */
+/* Steps so far, those that an adaptive method chose and those that ended at an impact or were tried
+ * in search of it included, and evaluations of the acceleration. */
 typedef struct msr_work {
   uint64_t steps, evaluations;
 } msr_work;

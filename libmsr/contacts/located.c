@@ -1,15 +1,15 @@
 /* located.c - impacts at the time when the path, bent by the acceleration, meets the support.
  *
- * The path of a mass is x + s w + s^2 a / 2. The first support on its chord is met where
- * the path crosses that pixel's edge; there w is reflected, and the path goes on from it. A few
- * impacts a step are followed; what can't be (a mass that rests, a corner) stays where it is for
- * the rest of the step, as in kept.c.
+ * The path of a mass is x + s w + s^2 a / 2. The first support on its chord is met where the path
+ * crosses that pixel's edge; there w is reflected, and the path goes on from it. A few impacts a
+ * step are followed; what can't be (a mass that rests, a place that isn't free) stays where it is
+ * for the rest of the step, as in kept.c.
  *
- * `owed` is d(v at the end) / d(a), over two: with it the velocity has the mean of the
- * accelerations at both ends, as Verlet's has. Elastic, an impact at s of h then makes of the
- * velocity along the normal -(v0 + (2s - h) (a0 + a1) / 2): a step of Verlet of 2s - h, reversed.
- * Its errors have no sign of their own, while with a0 alone each impact adds h^2/6 da/dt on
- * average, and many of them heat a stiff lattice. */
+ * `owed` is half of d(v at the end) / da: with it the velocity has the mean of the accelerations at
+ * both ends, as Verlet's has. Elastic, an impact at s of h then makes of the velocity along the
+ * normal -(v0 + (2s - h) (a0 + a1) / 2): a step of Verlet of 2s - h, reversed. Its errors have no
+ * sign of their own, while with a0 alone each impact adds h^2/6 da/dt on average, and many of them
+ * heat a stiff lattice. */
 #include "contacts/supports.h"
 
 enum { X, Y, MOST_IMPACTS = 8 };

@@ -1,4 +1,5 @@
-/* bits.c - the hashes of a scene with every kind of effect, by each integrator that is stable. */
+/* bits.c - the hashes of a scene with every kind of effect, by each integrator that is stable, and
+ * with located impacts. */
 #include "msr.h"
 
 #include <inttypes.h>
@@ -23,13 +24,18 @@ static msr_scene *load(const char *picture, const char *conf) {
   return scene;
 }
 
-static void print_hash(const msr_scene *scene, const msr_integrator *integrator) {
+static void print_hash(const msr_scene *scene, const msr_integrator *integrator,
+                       msr_impacts impacts) {
   msr_plan *plan;
   msr_state *state;
-  check(msr_plan_create(scene, &(msr_plan_options){.integrator = integrator}, &plan, &err));
+  check(msr_plan_create(scene, &(msr_plan_options){.integrator = integrator, .impacts = impacts},
+                        &plan, &err));
   check(msr_state_create(plan, &state, &err));
+  const msr_arrays s = msr_state_edit(state);
+  for (size_t i = 0; i < msr_plan_describe(plan).masses; i++) s.vy[i] = -300; /* onto the pegs */
   check(msr_state_step(state, integrator->adaptive ? 1 : 20, &err)); /* of many steps each */
-  printf("%s %016" PRIx64 "\n", integrator->name, msr_state_hash(state));
+  printf("%s%s %016" PRIx64 "\n", integrator->name, impacts == MSR_IMPACTS_KEPT ? "" : ",located",
+         msr_state_hash(state));
   msr_state_free(state);
   msr_plan_free(plan);
 }
@@ -38,6 +44,8 @@ int main(int argc, char **argv) {
   if (argc != 3) return EXIT_FAILURE;
   msr_scene *scene = load(argv[1], argv[2]);
   for (const msr_integrator *const *i = msr_integrators; *i; i++)
-    if ((*i)->stability > 0) print_hash(scene, *i);
+    if ((*i)->stability > 0) print_hash(scene, *i, MSR_IMPACTS_KEPT);
+  print_hash(scene, &msr_integrator_verlet, MSR_IMPACTS_LOCATED);
+  print_hash(scene, &msr_integrator_pefrl, MSR_IMPACTS_LOCATED);
   msr_scene_free(scene);
 }
