@@ -123,7 +123,7 @@ static const struct scene {
 } scenes[] = {
     {"free block", free_block, 1e-7, 300},
     {"spinning block", spinning_block, 1e-7, 300},
-    {"stiff block", stiff_block, 1e-7, 1500},
+    {"stiff block", stiff_block, 1e-5, 1500},
     {"hanging cloth", hanging_cloth, 1e-7, 300},
     {"bouncing block", bouncing_block, 1e-4, 2000},
     {"flag in gusts", flag_in_gusts, 1e-7, 300},

@@ -134,7 +134,7 @@ static msr_status stage(choosing *c, double share, finding *found, msr_error *er
   msri_reference_clear(&c->reference);
   msr_status status = msri_reference_find(&c->setting, &goal, &c->reference, err);
   if (status != MSR_OK) return status;
-  const bool parted = c->reference.n < c->setting.n;
+  const bool parted = c->reference.parted;
   const double sure = msri_reference_error(&c->reference) / own_share;
   c->wanted = (parted ? c->error : msri_max(share * c->error, sure)) - sure * own_share;
   c->best = c->longest = (msri_measured){0};
@@ -183,8 +183,9 @@ static size_t second_length(const choosing *c, const finding *f) {
 }
 
 static double first_share(const choosing *c) {
-  const double verlet = msri_setting_verlet(&c->setting, c->setting.iteration[c->all - 1]);
-  const double share = c->setting.watch.budget / 4 / (trials * verlet);
+  const double steps = msri_setting_verlet(&c->setting, c->setting.iteration[c->all - 1]);
+  const double share =
+      c->setting.watch.budget / 4 / msri_setting_seconds(&c->setting, trials * steps);
   return share >= 0.5 ? 1 : share;
 }
 
@@ -199,12 +200,14 @@ static msr_status choose(choosing *c, finding *found, msr_error *err) {
   msr_status status = stage(c, part(c, c->setting.n, 1.5), found, err);
   if (status != MSR_OK || found->n == 0 || found->parted || found->n == c->all) return status;
   const size_t n = second_length(c, found);
-  if (share_at(c, n) < 2 * share_at(c, found->n) || c->setting.watch.over) return status;
+  const msri_watch *watch = &c->setting.watch;
+  const bool late = msri_watch_elapsed(watch) > reference_share / 2 * watch->budget;
+  if (share_at(c, n) < 2 * share_at(c, found->n) || late) return status;
   go_on(c, share_at(c, n) / share_at(c, found->n));
   c->setting.n = n;
   msr_error said;
   status = stage(c, part(c, n, growth_of(found)) / (n < c->all ? 2 : 1), found, &said);
-  return c->setting.watch.over ? MSR_OK : status;
+  return c->setting.watch.over || status == MSR_EUNSTABLE ? MSR_OK : status;
 }
 
 /* ---- The choice */

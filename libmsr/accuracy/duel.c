@@ -64,10 +64,15 @@ static msr_status fight(duel *d, msr_error *err) {
   msr_status status = MSR_OK;
   for (size_t i = 0; i < d->setting->n && status == MSR_OK; i++) {
     status = advance(d, d->setting->iteration[i], err);
-    if (status == MSR_OK && !record(d)) break;
+    if (status == MSR_OK && !record(d)) {
+      d->made->parted = true;
+      break;
+    }
   }
   d->made->cost = msri_trial_cost(d->truth.state) + msri_trial_cost(d->witness.state);
-  return status == MSR_EUNSTABLE || d->setting->watch.over ? MSR_OK : status;
+  if (d->setting->watch.over) return MSR_OK;
+  d->made->parted |= status == MSR_EUNSTABLE;
+  return status == MSR_EUNSTABLE ? MSR_OK : status;
 }
 
 static msr_status reserve(const msri_setting *setting, msri_reference *r, msr_error *err) {

@@ -3,7 +3,9 @@
  * Two unrelated methods run side by side; both are refined while it pays. Where they part (chaos
  * after many impacts), nothing can be said: that is the horizon. Pairs of high order serve where
  * motion is smooth. What supports do costs all methods their order, unless impacts are few; there
- * a pair that is cheap per step may be more exact. The pair that begins best is refined. */
+ * a pair that is cheap per step may be more exact. The pair that begins best is refined. Where
+ * explicit methods need many steps an iteration, implicit ones may tell the truth sooner; and where
+ * there is no time for those, they are all there is. */
 #include "accuracy/duel.h"
 
 #include <math.h>
@@ -20,15 +22,22 @@ static const msri_rivals impacts[] = {
     {{&msr_integrator_verlet, 12, 0}, {&msr_integrator_pefrl, 5, 0}},
 };
 
-static const double quick_goal = 1e-6; /* below this error a quick look is of no use [px] */
-enum { MOST_LEVELS = 12 };
+static const msri_rivals stiff = {{&msr_integrator_energy_momentum, 6, 0},
+                                  {&msr_integrator_implicit_midpoint, 4, 0}};
+
+static const double many_steps = 20;    /* of Verlet, an iteration */
+static const double explicit_cost = 30; /* of a quick look, over Verlet's */
+static const double quick_goal = 1e-6;  /* below this error a quick look is of no use [px] */
+enum { MOST_LEVELS = 12, MOST_VAIN = 6 };
 
 typedef struct quest {
   msri_setting *setting;
   const msri_reference_goal *goal;
   msri_reference best;
   const msri_rivals *pair; /* that made it */
+  double share;            /* of the budget, to be kept to */
   double spent;            /* on its last level [s] */
+  double cost;             /* of the last level that was tried */
   bool pays;               /* was that worth it? */
 } quest;
 
@@ -53,22 +62,26 @@ static bool good_enough(const quest *q) {
   return q->best.n == q->setting->n && msri_reference_error(&q->best) <= q->goal->enough;
 }
 
+static bool quickly(const quest *q) { return q->goal->enough >= quick_goal; }
+
 /* Would another level, twice as long, end in time? */
 static bool time_for_more(const quest *q) {
   const msri_watch *watch = &q->setting->watch;
-  return !watch->over && msri_watch_elapsed(watch) + 2 * q->spent < q->goal->share * watch->budget;
+  return watch->status == MSR_OK &&
+         msri_watch_elapsed(watch) + 2 * q->spent < q->share * watch->budget;
 }
 
 /* A level of a pair; it's kept if it is better than the best so far. */
 static msr_status try(quest *q, const msri_rivals *pair, int level, msr_error *err) {
   const double start = msri_watch_elapsed(&q->setting->watch);
   msri_reference next;
-  msri_watch_next(&q->setting->watch, q->goal->share, "reference: %s and %s, level %d",
+  msri_watch_next(&q->setting->watch, q->share, "reference: %s and %s, level %d",
                   pair->truth.integrator->name, pair->witness.integrator->name, level + 1);
   const msr_status status = msri_duel(q->setting, pair, level, q->goal->parted, &next, err);
   if (status != MSR_OK) return status;
   const bool keep = better(&q->best, &next);
   q->pays = pays(q, &q->best, &next);
+  q->cost = next.cost;
   msri_reference worse = keep ? q->best : next;
   if (keep) {
     q->best = next;
@@ -79,34 +92,57 @@ static msr_status try(quest *q, const msri_rivals *pair, int level, msr_error *e
   return MSR_OK;
 }
 
-/* The first level of every pair, until one is good enough. */
-static msr_status try_pairs(quest *q, const msri_rivals *pair, size_t n, msr_error *err) {
+/* Level after level of a pair, from the one given, while the next costs less than `most` or, if
+ * that is no limit, while it pays. */
+static msr_status refine(quest *q, const msri_rivals *pair, int level, double most,
+                         msr_error *err) {
   msr_status status = MSR_OK;
-  for (size_t i = q->goal->enough >= quick_goal ? 0 : 1; status == MSR_OK && i < n; i++) {
-    if (good_enough(q) || q->setting->watch.over) break;
-    status = try(q, &pair[i], 0, err);
+  q->pays = true;
+  q->cost = 0;
+  for (; status == MSR_OK && level < MOST_LEVELS; level++) {
+    const bool vain = q->best.n == 0 ? level >= MOST_VAIN : most == HUGE_VAL && !q->pays;
+    if (good_enough(q) || vain || !time_for_more(q) || 2 * q->cost > most) break;
+    status = try(q, pair, level, err);
   }
   return status;
 }
 
 /* Refines the pair whose first level is best, the quick one aside. */
-static msr_status try_all(quest *q, msr_error *err) {
-  const bool supports = q->setting->contacts;
-  const msri_rivals *pair = supports ? impacts : smooth;
-  const size_t n = supports ? sizeof impacts / sizeof *impacts : sizeof smooth / sizeof *smooth;
-  msr_status status = try_pairs(q, pair, n, err);
-  if (!q->pair || q->pair == pair) q->pair = pair + 1;
-  q->pays = true;
-  for (int level = 1; status == MSR_OK && level < MOST_LEVELS; level++) {
-    if (good_enough(q) || !q->pays || !time_for_more(q)) break;
-    status = try(q, q->pair, level, err);
+static msr_status try_explicit(quest *q, const msri_rivals *pair, size_t n, msr_error *err) {
+  msr_status status = MSR_OK;
+  for (size_t i = quickly(q) ? 0 : 1; status == MSR_OK && i < n; i++) {
+    if (good_enough(q) || q->setting->watch.over) return MSR_OK;
+    status = try(q, &pair[i], 0, err);
   }
-  return status;
+  const bool fine = q->pair > pair && q->pair < pair + n;
+  return status == MSR_OK ? refine(q, fine ? q->pair : pair + 1, 1, HUGE_VAL, err) : status;
+}
+
+/* Was there time for the first half? */
+static bool halfway(const quest *q) {
+  const msri_setting *s = q->setting;
+  return q->best.n > 0 && 2 * s->iteration[q->best.n - 1] >= s->iteration[s->n - 1];
+}
+
+static msr_status try_all(quest *q, msr_error *err) {
+  const msri_setting *s = q->setting;
+  const msri_rivals *pair = s->contacts ? impacts : smooth;
+  const size_t n = s->contacts ? sizeof impacts / sizeof *impacts : sizeof smooth / sizeof *smooth;
+  const uint64_t end = s->iteration[s->n - 1];
+  const double steps = msri_setting_verlet(s, end);
+  const bool many = steps > many_steps * (double)end;
+  msr_status status = MSR_OK;
+  if (many && quickly(q)) status = refine(q, &stiff, 0, explicit_cost * steps, err);
+  if (status == MSR_OK && !good_enough(q)) status = try_explicit(q, pair, n, err);
+  if (status != MSR_OK || !many || q->best.parted || halfway(q)) return status;
+  q->share *= 2;
+  q->spent = 0;
+  return refine(q, &stiff, 0, HUGE_VAL, err);
 }
 
 msr_status msri_reference_find(msri_setting *setting, const msri_reference_goal *goal,
                                msri_reference *reference, msr_error *err) {
-  quest q = {.setting = setting, .goal = goal};
+  quest q = {.setting = setting, .goal = goal, .share = goal->share};
   msr_error said = {MSR_OK, ""};
   const msr_status status = try_all(&q, &said);
   *reference = q.best;

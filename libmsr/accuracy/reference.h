@@ -7,6 +7,7 @@
 
 typedef struct msri_reference {
   size_t n;       /* instants up to the horizon */
+  bool parted;    /* it is where the two part; else the end, or where time was up */
   double *q;      /* [n][2 masses]: x, y */
   double *energy; /* [n] total */
   double *gap;    /* [n] largest difference of the two so far [px] */

@@ -20,18 +20,18 @@ double msri_setting_seconds(const msri_setting *s, double cost) {
   return cost * each * ((double)f.masses + (double)f.springs + small);
 }
 
-/* How long Verlet's largest stable steps up to an iteration might take [s]. */
 double msri_setting_verlet(const msri_setting *s, uint64_t iteration) {
   const msr_plan_figures f = msr_plan_describe(s->plan);
   const double substeps = f.stable_step < f.dt ? ceil(f.dt / f.stable_step) : 1;
-  return msri_setting_seconds(s, substeps * (double)iteration);
+  return substeps * (double)iteration;
 }
 
 static msr_status choose_instants(msri_setting *s, uint64_t end,
                                   const msri_setting_defaults *defaults, msr_error *err) {
   const msr_plan_figures f = msr_plan_describe(s->plan);
   const uint64_t frame = f.iterations / f.images;
-  const bool slow = 1000 * msri_setting_verlet(s, frame) > s->watch.budget;
+  const double verlet = msri_setting_seconds(s, msri_setting_verlet(s, frame));
+  const bool slow = 1000 * verlet > s->watch.budget;
   msri_instants made;
   const msri_instants_wanted wanted = {.iterations = f.iterations,
                                        .images = f.images,

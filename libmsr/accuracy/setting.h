@@ -55,7 +55,7 @@ int msri_setting_order(const msri_setting *setting, const msr_integrator *integr
  * depend on this one. */
 double msri_setting_seconds(const msri_setting *setting, double cost);
 
-/* The same of Verlet's largest stable steps up to an iteration. */
+/* Verlet's largest stable steps up to an iteration. */
 double msri_setting_verlet(const msri_setting *setting, uint64_t iteration);
 
 /* Hash of all that the scene holds: masses, springs, forces, supports, times. */
