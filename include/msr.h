@@ -195,7 +195,8 @@ typedef struct msr_force {
   double (*energy)(const void *self, const msr_view *s);
   /* For conservative: adds the discrete gradient between the places of s and those of `to`, whose
    * work is what the potential loses: F.(to - s) = U(s) - U(to). NULL: the library corrects add()
-   * at the middle to the same end (Gonzalez 1996, J. Nonlinear Sci. 6, 449). */
+   * at the middle, along the way of all masses, to the same end (Gonzalez 1996, J. Nonlinear Sci.
+   * 6, 449); momentum is kept only by a force that gives its own. */
   msr_status (*between)(const void *self, void *scratch, const msr_view *s, const msr_view *to,
                         double *fx, double *fy);
   /* Upper bounds at any stretch, for the stable step: of the largest eigenvalue of -dF/dx / m
@@ -278,12 +279,16 @@ typedef struct msr_system {
   /* The mean acceleration from q0 to q1 whose work is exactly what the potentials lose (discrete
    * gradient), what has no potential taken at time t in the middle. NULL: a in the middle. */
   msr_status (*between)(void *self, double t, const double *q0, const double *q1, double *a);
-  /* Prepares solve for A = 1 - c da/dq at (t, q1) or, if q0 isn't NULL, with twice the derivative
-   * by q1 of what between gives in the place of da/dq. */
+  /* Prepares solve for A = 1 - c da/dq at (t, q) or, if q0 isn't NULL, for 1 - 2 c times the
+   * derivative by q of what between gives from q0. What is near it will do (of a scene: springs and
+   * anchors, made positive; other forces count as constant, which converges while c times their
+   * own -da/dq is below 1); a closer one takes fewer iterations. `from`, near q, is where the
+   * iteration was before, or begins: to take tensions as they would be if they had changed linearly
+   * since lets it converge in as few where springs are stiff. */
   msr_status (*linearise)(void *self, double t, const double *q0, const double *from,
-                          const double *q1, double c);
-  /* x[n] with |A x - r| <= tolerance |r|; da/dq may be what is near it and makes A positive.
-   * Both NULL: implicit methods take differences of a. */
+                          const double *q, double c);
+  /* x[n] with |A x - r| <= tolerance |x|, or as near as rounding allows. Both NULL: implicit
+   * methods take differences of a. */
   msr_status (*solve)(void *self, const double *r, double tolerance, double *x);
   /* Adaptive methods take a step back if its estimated error is larger than atol + rtol |q| in q,
    * or atol + rtol |v| in v with times in seconds, |.| being the largest coordinate. Both finite, 0

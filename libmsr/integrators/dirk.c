@@ -3,6 +3,7 @@
  * k_i the acceleration of stage i, its displacement solves one equation,
  *     d_i = c_i h v + h^2 (A_i1 k_1 + ... + A_ii k_i),  k_i = a(t + c_i h, q + d_i).
  * What depends on v is advanced by its own flow, by half a step at each end (Strang 1968). */
+#include "base/vector.h"
 #include "integrators/newton.h"
 
 #include <math.h>
@@ -23,26 +24,37 @@ static double twice(const tableau *row, const double *w, int j) {
   return sum;
 }
 
-static void add(size_t n, double w, const double *a, double *sum) {
-  for (size_t i = 0; i < n; i++) sum[i] += w * a[i];
+/* A step under way. All vectors are [n]. */
+typedef struct stages {
+  const tableau *row;
+  const msr_interval *interval;
+  double *known, *k[MOST_STAGES], *memory;
+  void *object;
+} stages;
+
+static stages lay_out(const tableau *row, const msr_interval *interval, size_t n,
+                      const msr_workspace *work) {
+  stages s = {.row = row, .interval = interval, .known = work->vector, .object = work->object};
+  for (int i = 0; i < row->stages; i++) s.k[i] = s.known + (size_t)(1 + i) * n;
+  s.memory = s.known + (size_t)(1 + row->stages) * n;
+  return s;
 }
 
-/* The acceleration k[i] of stage i, from those before it. `known` is all but its own part. */
-static msr_status solve_stage(const tableau *row, int i, const msr_interval *interval,
-                              const msri_stage *at, msr_workspace *work, double *known,
-                              double *const *k, double *memory, msr_error *err) {
+/* k_i, from those before it: by the displacement d_i, of which `known` is all but its own part. */
+static msr_status solve_stage(const stages *s, int i, const msri_stage *at, msr_error *err) {
+  const tableau *row = s->row;
   const size_t n = at->system->n;
-  const double h = interval->h, own = row->a[i][i] * row->a[i][i] * h * h;
-  double *d = k[i];
+  const double h = s->interval->h, own = row->a[i][i] * row->a[i][i] * h * h;
+  double *d = s->k[i], *known = s->known;
   for (size_t m = 0; m < n; m++) known[m] = row->c[i] * h * at->v0[m];
-  for (int j = 0; j < i; j++) add(n, h * h * twice(row, row->a[i], j), k[j], known);
+  for (int j = 0; j < i; j++) msri_add_scaled(n, h * h * twice(row, row->a[i], j), s->k[j], known);
   memcpy(d, known, n * sizeof *d);
-  if (i > 0) add(n, own, k[i - 1], d);
+  if (i > 0) msri_add_scaled(n, own, s->k[i - 1], d);
   msri_stage stage = *at;
-  stage.t = msr_interval_time(interval, row->c[i]);
+  stage.t = msr_interval_time(s->interval, row->c[i]);
   stage.known = known;
   stage.weight = own;
-  const msr_status status = msri_newton(&stage, memory, work->object, d, err);
+  const msr_status status = msri_newton(&stage, s->memory, s->object, d, err);
   for (size_t m = 0; m < n; m++) d[m] = (d[m] - known[m]) / own;
   return status;
 }
@@ -53,17 +65,16 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
   const tableau *row = self->coefficients;
   const size_t n = system->n;
   const double h = interval->h;
-  double *known = work->vector, *k[MOST_STAGES], *memory = known + (size_t)(1 + row->stages) * n;
-  for (int i = 0; i < row->stages; i++) k[i] = known + (size_t)(1 + i) * n;
+  const stages s = lay_out(row, interval, n, work);
   const msri_stage stage = {.system = system, .q0 = q, .v0 = v};
   msr_status status = msri_damp(system, interval->t, h / 2, false, q, v);
   for (int i = 0; i < row->stages && status == MSR_OK; i++)
-    status = solve_stage(row, i, interval, &stage, work, known, k, memory, err);
+    status = solve_stage(&s, i, &stage, err);
   if (status != MSR_OK) return status;
-  add(n, h, v, q);
+  msri_add_scaled(n, h, v, q);
   for (int j = 0; j < row->stages; j++) {
-    add(n, h * h * twice(row, row->b, j), k[j], q);
-    add(n, h * row->b[j], k[j], v);
+    msri_add_scaled(n, h * h * twice(row, row->b, j), s.k[j], q);
+    msri_add_scaled(n, h * row->b[j], s.k[j], v);
   }
   return msri_damp(system, interval->end, h / 2, true, q, v);
 }

@@ -3,6 +3,8 @@
  * e. For systems that don't bring a solver of their own: any n, no matrix. */
 #include "integrators/krylov.h"
 
+#include "base/vector.h"
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -24,10 +26,6 @@ static double dot(size_t n, const double *a, const double *b) {
   return sum;
 }
 
-static void add(size_t n, double w, const double *a, double *sum) {
-  for (size_t i = 0; i < n; i++) sum[i] += w * a[i];
-}
-
 msr_status msri_stage_acceleration(const msri_stage *stage, const double *q, double *a) {
   const msr_system *s = stage->system;
   if (stage->between) return s->between(s->self, stage->t, stage->q0, q, a);
@@ -40,7 +38,7 @@ static msr_status multiply(const krylov *k, const double *x, double *y) {
   const double length = sqrt(dot(k->n, x, x));
   const double e = length > 0 ? sqrt(DBL_EPSILON) * (1 + k->size) / length : 1;
   memcpy(k->place, k->q, k->n * sizeof *x);
-  add(k->n, e, x, k->place);
+  msri_add_scaled(k->n, e, x, k->place);
   const msr_status status = msri_stage_acceleration(k->stage, k->place, y);
   const double w = k->stage->weight / e;
   for (size_t i = 0; i < k->n; i++) y[i] = x[i] - w * (y[i] - k->middle[i]);
@@ -59,8 +57,8 @@ static msr_status iterate(const krylov *k, double tolerance, double *x, double *
   const double alpha = *rho / dot(n, k->shadow, k->image);
   *done = !isfinite(alpha);
   if (*done) return MSR_OK;
-  add(n, alpha, k->direction, x);
-  add(n, -alpha, k->image, k->residual);
+  msri_add_scaled(n, alpha, k->direction, x);
+  msri_add_scaled(n, -alpha, k->image, k->residual);
   *done = small(k, tolerance, x);
   if (*done) return MSR_OK;
   status = multiply(k, k->residual, k->second);
@@ -68,8 +66,8 @@ static msr_status iterate(const krylov *k, double tolerance, double *x, double *
   const double omega = dot(n, k->second, k->residual) / dot(n, k->second, k->second);
   *done = !(fabs(omega) > 0);
   if (*done) return MSR_OK;
-  add(n, omega, k->residual, x);
-  add(n, -omega, k->second, k->residual);
+  msri_add_scaled(n, omega, k->residual, x);
+  msri_add_scaled(n, -omega, k->second, k->residual);
   const double next = dot(n, k->shadow, k->residual), beta = next / *rho * alpha / omega;
   for (size_t i = 0; i < n; i++)
     k->direction[i] = k->residual[i] + beta * (k->direction[i] - omega * k->image[i]);

@@ -8,14 +8,17 @@
 
 enum { MOST_ITERATIONS = 5000 };
 
-/* x = 0, residual = M r. */
-static void start(msri_stiffness *a, const double *r) {
+/* x = 0, residual = M r; is there any? */
+static bool start(msri_stiffness *a, const double *r) {
   const size_t n = a->graph->n;
+  bool any = false;
   for (size_t i = 0; i < n; i++) {
     const double m = a->m[i * a->m_stride];
     a->residual[i] = (msri_vector){m * r[i], m * r[n + i]};
+    any |= r[i] != 0 || r[n + i] != 0;
   }
   memset(a->x, 0, n * sizeof *a->x);
+  return any;
 }
 
 /* y = A p; returns p.y */
@@ -69,7 +72,6 @@ static void turn(size_t n, double w, const msri_vector *restrict z, msri_vector 
 static msr_status iterate(msri_stiffness *a, double tolerance) {
   const size_t n = a->graph->n;
   double rz = msri_stiffness_precondition(a, a->residual, a->image);
-  if (rz == 0) return MSR_OK;
   memcpy(a->direction, a->image, n * sizeof *a->direction);
   for (int k = 0; k < MOST_ITERATIONS; k++) {
     const double curvature = multiply(a, a->direction, a->image);
@@ -85,8 +87,7 @@ static msr_status iterate(msri_stiffness *a, double tolerance) {
 
 msr_status msri_stiffness_solve(msri_stiffness *a, const double *r, double tolerance, double *x) {
   const size_t n = a->graph->n;
-  start(a, r);
-  const msr_status status = iterate(a, tolerance);
+  const msr_status status = start(a, r) ? iterate(a, tolerance) : MSR_OK;
   for (size_t i = 0; i < n; i++) x[i] = a->x[i].x;
   for (size_t i = 0; i < n; i++) x[n + i] = a->x[i].y;
   return status;

@@ -12,6 +12,8 @@
  *   derivative by x1 of k n n1^T + ..., n along x0 + x1; n takes the place of n1, for symmetry. */
 #include "solvers/stiffness.h"
 
+#include "base/machine.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -62,65 +64,116 @@ msri_stiffness msri_stiffness_place(const msri_graph *graph, const msr_view *s, 
 
 /* ---- Springs */
 
-/* The vectors along springs, from xi, yi to xj, yj [count]. */
+/* Where the matrix is asked for, as linearise() is given it. */
+typedef struct place {
+  const double *q0, *from, *q;
+  double c;
+} place;
+
+/* The ends of springs, from xi, yi to xj, yj [count]. */
 typedef struct ends {
   const double *xi, *yi, *xj, *yj;
 } ends;
 
-/* Where springs are: q0 (NULL: the same as q), the place before, q. */
-typedef struct places {
-  const ends *start, *from, *at;
-} places;
+/* Springs [count] at the start (if `mean`), at the place before, and now. */
+typedef struct strands {
+  size_t count;
+  ends start, from, now;
+  const double *k, *L;
+  double c, least;
+} strands;
 
 typedef struct blocks {
   double xx[BLOCK], xy[BLOCK], yy[BLOCK];
 } blocks;
 
-static inline double length(double x, double y) { return sqrt(x * x + y * y); }
+MSRI_INLINE double length(double x, double y) { return sqrt(x * x + y * y); }
 
-/* c K of `count` springs. One without a length has no direction: it resists along any. */
-static inline void stiffen(size_t count, const places *p, const double *k, const double *L,
-                           size_t stride, double c, double least, blocks *restrict b) {
-  const ends *from = p->from, *at = p->at, *start = p->start;
-  for (size_t s = 0; s < count; s++) {
-    double dx = at->xj[s] - at->xi[s], dy = at->yj[s] - at->yi[s], rest = L[s * stride];
-    const double fx = from->xj[s] - from->xi[s], fy = from->yj[s] - from->yi[s];
-    const double lf = length(fx, fy);
-    double l = length(dx, dy), foretold = lf > 0 ? (fx * dx + fy * dy) / lf : l;
-    if (start) {
-      const double x0 = start->xj[s] - start->xi[s], y0 = start->yj[s] - start->yi[s];
+/* A spring's vector, its length (infinite if it has none), and the tension foretold. */
+typedef struct geometry {
+  double dx[BLOCK], dy[BLOCK], l[BLOCK], tension[BLOCK];
+} geometry;
+
+/* The sum of both vectors and lengths if `mean`. Divisors are chosen, not quotients, and nothing
+ * after a quotient, or gcc would not vectorise. */
+MSRI_INLINE void measure(const strands *s, size_t stride, bool mean, geometry *restrict g) {
+  const ends start = s->start, from = s->from, now = s->now;
+  const double *k = s->k, *L = s->L, c = s->c, none = INFINITY;
+  for (size_t n = 0; n < s->count; n++) {
+    double dx = now.xj[n] - now.xi[n], dy = now.yj[n] - now.yi[n], rest = L[n * stride];
+    const double fx = from.xj[n] - from.xi[n], fy = from.yj[n] - from.yi[n], lf = length(fx, fy);
+    double l = length(dx, dy), foretold = (fx * dx + fy * dy) / (lf > 0 ? lf : none);
+    if (mean) {
+      const double x0 = start.xj[n] - start.xi[n], y0 = start.yj[n] - start.yi[n];
       const double l0 = length(x0, y0);
       dx += x0, dy += y0, rest *= 2, l += l0, foretold += l0;
     }
-    const double ck = c * k[s * stride], tension = ck * (foretold - rest) / l;
-    const double cut = tension > least ? tension : least;
-    const double across = l > 0 ? cut : ck, along = l > 0 ? (ck - across) / (l * l) : 0;
-    b->xx[s] = across + along * dx * dx;
-    b->xy[s] = along * dx * dy;
-    b->yy[s] = across + along * dy * dy;
+    g->dx[n] = dx;
+    g->dy[n] = dy;
+    g->l[n] = l > 0 ? l : none;
+    g->tension[n] = c * k[n * stride] * (foretold - rest) / (l > 0 ? l : none);
   }
+}
+
+/* c K of each spring. One without a length has no direction: it resists along any. */
+MSRI_INLINE void stiffen(const strands *s, size_t stride, bool mean, blocks *restrict b) {
+  geometry g;
+  const double *k = s->k, c = s->c, least = s->least, none = INFINITY;
+  measure(s, stride, mean, &g);
+  for (size_t n = 0; n < s->count; n++) {
+    const double ck = c * k[n * stride], floor = g.l[n] < none ? least : ck;
+    const double across = g.tension[n] > floor ? g.tension[n] : floor;
+    const double along = (ck - across) / (g.l[n] * g.l[n]);
+    b->xx[n] = across + along * g.dx[n] * g.dx[n];
+    b->xy[n] = along * g.dx[n] * g.dy[n];
+    b->yy[n] = across + along * g.dy[n] * g.dy[n];
+  }
+}
+
+MSRI_INLINE void stiffen_any(const strands *s, size_t stride, bool mean, blocks *b) {
+  if (stride && mean) stiffen(s, 1, true, b);
+  if (stride && !mean) stiffen(s, 1, false, b);
+  if (!stride && mean) stiffen(s, 0, true, b);
+  if (!stride && !mean) stiffen(s, 0, false, b);
+}
+
+#if MSRI_WIDE
+MSRI_AVX2 static void stiffen_avx2(const strands *s, size_t stride, bool mean, blocks *b) {
+  stiffen_any(s, stride, mean, b);
+}
+#endif
+
+static void stiffen_here(const strands *s, size_t stride, bool mean, blocks *b) {
+#if MSRI_WIDE
+  if (msri_has_avx2()) {
+    stiffen_avx2(s, stride, mean, b);
+    return;
+  }
+#endif
+  stiffen_any(s, stride, mean, b);
 }
 
 static ends ends_of(const double *q, size_t n, size_t i, size_t j) {
   return (ends){q + i, q + n + i, q + j, q + n + j};
 }
 
-/* Springs from + 0 .. count - 1 of a run, whose pairs are given. */
-static void add_block(msri_stiffness *a, const double *q0, const double *from, const double *q,
-                      double c, const msr_run_of_springs *run, size_t first, size_t count,
-                      const uint32_t *pair) {
+/* Springs first .. first + count - 1 of a run, which belong to the pairs given. */
+static void add_block(msri_stiffness *a, const place *at, const msr_run_of_springs *run,
+                      size_t first, size_t count, const uint32_t *pair) {
   blocks b;
   const size_t n = a->graph->n, i = run->first + first, j = i + run->offset;
-  const double *k = run->k + first * run->stride, *L = run->L + first * run->stride;
-  const ends start = ends_of(q0 ? q0 : q, n, i, j), before = ends_of(from, n, i, j),
-             at = ends_of(q, n, i, j);
-  if (q0)
-    stiffen(count, &(places){&start, &before, &at}, k, L, run->stride, c, a->least, &b);
-  else
-    stiffen(count, &(places){NULL, &before, &at}, k, L, run->stride, c, a->least, &b);
-  for (size_t s = 0; s < count; s++) {
-    msri_block *tie = &a->tie[pair[s]];
-    *tie = msri_block_sum(*tie, (msri_block){b.xx[s], b.xy[s], b.yy[s]});
+  const strands s = {.count = count,
+                     .start = ends_of(at->q0 ? at->q0 : at->q, n, i, j),
+                     .from = ends_of(at->from, n, i, j),
+                     .now = ends_of(at->q, n, i, j),
+                     .k = run->k + first * run->stride,
+                     .L = run->L + first * run->stride,
+                     .c = at->c,
+                     .least = a->least};
+  stiffen_here(&s, run->stride, at->q0 != NULL, &b);
+  for (size_t m = 0; m < count; m++) {
+    msri_block *tie = &a->tie[pair[m]];
+    *tie = msri_block_sum(*tie, (msri_block){b.xx[m], b.xy[m], b.yy[m]});
   }
 }
 
@@ -128,19 +181,25 @@ static ends ends_of_anchor(const double *q, size_t n, const msr_anchor *a) {
   return (ends){q + a->i, q + n + a->i, &a->x, &a->y};
 }
 
-static msri_block stiffness_of_anchor(const msri_stiffness *a, const double *q0, const double *from,
-                                      const double *q, double c, const msr_anchor *to) {
+static msri_block stiffness_of_anchor(const msri_stiffness *a, const place *at,
+                                      const msr_anchor *to) {
   blocks b;
   const size_t n = a->graph->n;
-  const ends start = ends_of_anchor(q0 ? q0 : q, n, to), before = ends_of_anchor(from, n, to),
-             at = ends_of_anchor(q, n, to);
-  const places p = {q0 ? &start : NULL, &before, &at};
-  stiffen(1, &p, &to->k, &to->L, 0, c, a->least, &b);
+  const strands s = {.count = 1,
+                     .start = ends_of_anchor(at->q0 ? at->q0 : at->q, n, to),
+                     .from = ends_of_anchor(at->from, n, to),
+                     .now = ends_of_anchor(at->q, n, to),
+                     .k = &to->k,
+                     .L = &to->L,
+                     .c = at->c,
+                     .least = a->least};
+  stiffen_any(&s, 0, at->q0 != NULL, &b);
   return (msri_block){b.xx[0], b.xy[0], b.yy[0]};
 }
 
 void msri_stiffness_linearise(msri_stiffness *a, const double *q0, const double *from,
                               const double *q, double c) {
+  const place at = {q0, from, q, c};
   const msr_springs *springs = a->springs;
   const uint32_t *pair = a->graph->pair;
   memset(a->tie, 0, a->graph->pairs * sizeof *a->tie);
@@ -148,11 +207,11 @@ void msri_stiffness_linearise(msri_stiffness *a, const double *q0, const double 
     const msr_run_of_springs *run = &springs->run[r];
     for (size_t s = 0; s < run->count; s += BLOCK) {
       const size_t left = run->count - s;
-      add_block(a, q0, from, q, c, run, s, left < BLOCK ? left : BLOCK, pair + s);
+      add_block(a, &at, run, s, left < BLOCK ? left : BLOCK, pair + s);
     }
     pair += run->count;
   }
   for (size_t n = 0; n < springs->n_anchors; n++)
-    a->anchor[n] = stiffness_of_anchor(a, q0, from, q, c, &springs->anchor[n]);
+    a->anchor[n] = stiffness_of_anchor(a, &at, &springs->anchor[n]);
   msri_stiffness_factorise(a);
 }

@@ -1,0 +1,317 @@
+/* test_solvers.c - the matrix of implicit methods: its pattern, what it says, and its solution,
+ * against dense matrices of GSL. */
+#include "plan/state.h"
+
+#include "scenes.h"
+
+#include <gsl/gsl_linalg.h>
+
+static const mesh meshes[] = {
+    {.masses = 2, .springs = 1, .equal = true, .seed = 1},
+    {.masses = 12, .springs = 30, .equal = true, .seed = 2},
+    {.masses = 12, .springs = 30, .anchors = 4, .seed = 3},
+    {.masses = 9, .springs = 20, .anchors = 3, .slack = true, .seed = 4},
+    {.masses = 9, .springs = 20, .anchors = 3, .coincident = true, .seed = 5},
+    {.masses = 4, .springs = 60, .anchors = 20, .seed = 6}, /* many between the same two */
+    {.masses = 6, .springs = 0, .anchors = 2, .seed = 7},
+};
+
+/* ---- The pattern */
+
+static bool tied(const msr_springs *springs, size_t i, size_t j) {
+  for (size_t r = 0; r < springs->n_runs; r++) {
+    const msr_run_of_springs *run = &springs->run[r];
+    if (i >= run->first && i < run->first + run->count && j == i + run->offset) return true;
+  }
+  return false;
+}
+
+static void check_graph(const msri_graph *g, const msr_springs *springs) {
+  size_t pairs = 0, spring = 0;
+  for (size_t i = 0; i < g->n; i++)
+    for (size_t j = i + 1; j < g->n; j++) {
+      if (!tied(springs, i, j)) continue;
+      assert_true(g->begin[i] <= pairs && pairs < g->begin[i + 1]);
+      assert_int_equal(g->end[pairs], j);
+      pairs++;
+    }
+  assert_int_equal(g->pairs, pairs);
+  assert_int_equal(g->begin[g->n], pairs);
+  for (size_t r = 0; r < springs->n_runs; r++)
+    for (size_t s = 0; s < springs->run[r].count; s++, spring++) {
+      const size_t i = springs->run[r].first + s, pair = g->pair[spring];
+      assert_true(g->begin[i] <= pairs && pair < g->begin[i + 1]);
+      assert_int_equal(g->end[pair], i + springs->run[r].offset);
+    }
+}
+
+static void pairs_are_sorted_and_merged(void **state) {
+  (void)state;
+  for (size_t m = 0; m < LENGTH(meshes); m++) {
+    world w = open_world(random_mesh(&meshes[m], NULL), NULL, 0);
+    const msr_view s = msr_state_view(w.state);
+    msri_graph *graph;
+    must(msri_graph_create(s.n, s.springs, &graph, &why));
+    check_graph(graph, s.springs);
+    free(graph);
+    close_world(w);
+  }
+}
+
+static void too_many_are_refused(void **state) {
+  (void)state;
+  const msr_springs none = {0}, many = {.n = (size_t)UINT32_MAX};
+  msri_graph *graph = NULL;
+  msr_error err;
+  assert_int_equal(msri_graph_create((size_t)UINT32_MAX, &none, &graph, &err), MSR_EUSAGE);
+  assert_non_null(strstr(err.message, "too many for an implicit integrator"));
+  assert_int_equal(msri_graph_create(2, &many, &graph, &err), MSR_EUSAGE);
+  assert_null(graph);
+}
+
+/* ---- What the matrix says */
+
+/* Where it is asked for: q0 may be NULL. */
+typedef struct place {
+  const double *q0, *from, *q;
+  double c;
+} place;
+
+/* Adds w (e_i - e_j)(e_i - e_j)^T for one spring, j = n: a fixed point. Of `b`, the 2 x 2 matrix.
+ */
+static void add_block(gsl_matrix *A, size_t n, size_t i, size_t j, double b[2][2]) {
+  const size_t mass[2] = {i, j};
+  for (size_t p = 0; p < 2; p++)
+    for (size_t r = 0; r < 2; r++)
+      for (size_t x = 0; x < 2; x++)
+        for (size_t y = 0; y < 2; y++) {
+          if (mass[p] == n || mass[r] == n) continue;
+          double *entry = gsl_matrix_ptr(A, mass[p] + x * n, mass[r] + y * n);
+          *entry += p == r ? b[x][y] : -b[x][y];
+        }
+}
+
+/* The vector of a spring to `to` at q, if that is none of the masses: to (x, y). */
+static void vector_of(const double *q, size_t n, size_t i, size_t j, const msr_anchor *a,
+                      double d[2]) {
+  d[0] = (a ? a->x : q[j]) - q[i];
+  d[1] = (a ? a->y : q[j + n]) - q[i + n];
+}
+
+/* c (k n n^T + (f/l) (1 - n n^T)), f foretold to first order from `from`, no f/l below `least`. */
+static void add_spring(gsl_matrix *A, const place *at, double least, size_t n, size_t i, size_t j,
+                       double k, double L, const msr_anchor *a) {
+  double d[2], d0[2], df[2], b[2][2];
+  vector_of(at->q, n, i, j, a, d);
+  vector_of(at->q0 ? at->q0 : at->q, n, i, j, a, d0);
+  vector_of(at->from, n, i, j, a, df);
+  const double mean[2] = {(d[0] + d0[0]) / 2, (d[1] + d0[1]) / 2};
+  const double l = (hypot(d[0], d[1]) + hypot(d0[0], d0[1])) / 2, lf = hypot(df[0], df[1]);
+  const double foretold = lf > 0 ? (df[0] * d[0] + df[1] * d[1]) / lf : 0;
+  const double now = at->q0 ? (hypot(d0[0], d0[1]) + foretold) / 2 : foretold;
+  const double across = l > 0 ? fmax(at->c * k * (now - L) / l, least) : at->c * k;
+  for (int x = 0; x < 2; x++)
+    for (int y = 0; y < 2; y++) {
+      const double nn = l > 0 ? mean[x] * mean[y] / (l * l) : 0;
+      b[x][y] = (at->c * k - across) * nn + (x == y ? across : 0);
+    }
+  add_block(A, n, i, j, b);
+}
+
+static gsl_matrix *dense(const msr_view *s, const place *at, double least) {
+  const size_t n = s->n;
+  gsl_matrix *A = gsl_matrix_calloc(2 * n, 2 * n);
+  for (size_t i = 0; i < n; i++)
+    for (size_t x = 0; x < 2; x++) gsl_matrix_set(A, i + x * n, i + x * n, msr_view_mass(s, i));
+  for (size_t r = 0; r < s->springs->n_runs; r++) {
+    const msr_run_of_springs *run = &s->springs->run[r];
+    for (size_t m = 0; m < run->count; m++)
+      add_spring(A, at, least, n, run->first + m, run->first + m + run->offset,
+                 run->k[m * run->stride], run->L[m * run->stride], NULL);
+  }
+  for (size_t m = 0; m < s->springs->n_anchors; m++) {
+    const msr_anchor *a = &s->springs->anchor[m];
+    add_spring(A, at, least, n, a->i, n, a->k, a->L, a);
+  }
+  return A;
+}
+
+/* x of A x = M r. */
+static void solve_densely(gsl_matrix *A, const msr_view *s, const double *r, double *x) {
+  const size_t n = 2 * s->n;
+  gsl_vector *b = gsl_vector_alloc(n);
+  for (size_t i = 0; i < n; i++) gsl_vector_set(b, i, msr_view_mass(s, i % s->n) * r[i]);
+  assert_int_equal(gsl_linalg_cholesky_decomp1(A), 0); /* it is positive */
+  assert_int_equal(gsl_linalg_cholesky_svx(A, b), 0);
+  memcpy(x, b->data, n * sizeof *x);
+  gsl_vector_free(b);
+}
+
+static void scatter(size_t n, uint64_t *dice, double size, const double *from, double *to) {
+  for (size_t i = 0; i < n; i++) to[i] = (from ? from[i] : 0) + uniform(dice, -size, size);
+}
+
+/* Both solve to eps times the ratio of the largest eigenvalue to the smallest, near c k / m; 1000
+ * for the number of springs, and the tolerance. */
+static void check_solution(world *w, const place *at, uint64_t *dice) {
+  const msr_view s = msr_state_view(w->state);
+  const msr_system system = msri_state_system(w->state);
+  const double tolerance = 1e-9, most = tolerance + 1000 * DBL_EPSILON * (1 + at->c * 100 / 0.1);
+  double r[64], x[64], expected[64];
+  scatter(2 * s.n, dice, 1, NULL, r);
+  must(system.linearise(system.self, 0, at->q0, at->from, at->q, at->c));
+  must(system.solve(system.self, r, tolerance, x));
+  gsl_matrix *A = dense(&s, at, w->state->stiffness.least);
+  solve_densely(A, &s, r, expected);
+  if (!(distance(2 * s.n, x, expected) <= most * sqrt(dot(2 * s.n, expected, expected))))
+    fail_msg("c %g: off by %g of %g", at->c, distance(2 * s.n, x, expected),
+             largest(2 * s.n, expected));
+  gsl_matrix_free(A);
+}
+
+static void solutions_are_those_of_dense_matrices(void **state) {
+  (void)state;
+  uint64_t dice = 11;
+  for (size_t m = 0; m < LENGTH(meshes); m++) {
+    world w = open_world(random_mesh(&meshes[m], NULL), &msr_integrator_backward_euler, 0);
+    const msr_view s = msr_state_view(w.state);
+    double near[64], far[64];
+    for (double c = 1e-6; c < 1e9; c *= 100) {
+      scatter(2 * s.n, &dice, 0.05, s.x, near);
+      scatter(2 * s.n, &dice, 2, s.x, far);
+      check_solution(&w, &(place){NULL, s.x, s.x, c}, &dice);
+      check_solution(&w, &(place){NULL, near, s.x, c}, &dice);
+      check_solution(&w, &(place){s.x, near, far, c}, &dice);
+      check_solution(&w, &(place){far, far, s.x, c}, &dice);
+    }
+    close_world(w);
+  }
+}
+
+/* y = (a(q + e x) - a(q - e x)) / 2e, by a and, from q, by between: off by e^2 and eps / e. */
+static void differ(const msr_system *system, const double *q, const double *x, bool mean,
+                   double *y) {
+  const double e = 1e-5;
+  double at[64], a[2][64];
+  for (int side = 0; side < 2; side++) {
+    for (size_t i = 0; i < system->n; i++) at[i] = q[i] + (side ? e : -e) * x[i];
+    if (mean)
+      must(system->between(system->self, 0, q, at, a[side]));
+    else
+      must(system->acceleration(system->self, 0, at, NULL, a[side]));
+  }
+  for (size_t i = 0; i < system->n; i++) y[i] = (a[1][i] - a[0][i]) / (2 * e);
+}
+
+/* While it cuts nothing off, the matrix is the derivative of a, and twice that of the mean: solving
+ * with what they make of x gives x. */
+static void the_matrix_is_the_derivative(void **state) {
+  (void)state;
+  uint64_t dice = 12;
+  for (size_t m = 0; m < LENGTH(meshes); m++) {
+    if (meshes[m].coincident) continue; /* there is no derivative */
+    world w = open_world(random_mesh(&meshes[m], NULL), &msr_integrator_energy_momentum, 0);
+    const msr_view s = msr_state_view(w.state);
+    const msr_system system = msri_state_system(w.state);
+    const double c = 1e-6;
+    double x[64], y[64], solution[64];
+    for (int mean = 0; mean < 2; mean++) {
+      scatter(2 * s.n, &dice, 1, NULL, x);
+      differ(&system, s.x, x, mean, y);
+      for (size_t i = 0; i < 2 * s.n; i++) y[i] = x[i] - (mean ? 2 : 1) * c * y[i];
+      must(system.linearise(system.self, 0, mean ? s.x : NULL, s.x, s.x, c));
+      must(system.solve(system.self, y, 1e-13, solution));
+      assert_true(distance(2 * s.n, x, solution) < 1e-11);
+    }
+    close_world(w);
+  }
+}
+
+/* ---- The factors */
+
+static world turned_lattice(double angle) {
+  world w = open_world(lattice(12, 9, 4, &(msr_conf){0.01, 0, 0.1, 1500, 1, 1}),
+                       &msr_integrator_backward_euler, 0);
+  const msr_arrays s = msr_state_edit(w.state);
+  for (size_t i = 0; i < 12 * 9; i++) {
+    const double x = s.x[i], y = s.y[i];
+    s.x[i] = cos(angle) * x - sin(angle) * y;
+    s.y[i] = sin(angle) * x + cos(angle) * y;
+  }
+  return w;
+}
+
+/* Rows and columns decouple: the factors alone solve, to eps times c k / m = 1e8 and 100 for sums
+ * along rows. */
+static void factors_of_a_turned_lattice_are_exact(void **state) {
+  (void)state;
+  enum { N = 12 * 9 };
+  uint64_t dice = 13;
+  for (double angle = 0; angle < 3; angle += 0.4) {
+    world w = turned_lattice(angle);
+    msri_stiffness *a = &w.state->stiffness;
+    const msr_view s = msr_state_view(w.state);
+    double r[2 * N], x[2 * N], z[2 * N];
+    msri_vector b[N], y[N];
+    scatter(2 * N, &dice, 1, NULL, r);
+    msri_stiffness_linearise(a, NULL, s.x, s.x, 1e8 * 0.1 / 1500);
+    must(msri_stiffness_solve(a, r, 1e-9, x));
+    for (size_t i = 0; i < N; i++) b[i] = (msri_vector){0.1 * r[i], 0.1 * r[N + i]};
+    msri_stiffness_precondition(a, b, y);
+    for (size_t i = 0; i < N; i++) z[i] = y[i].x, z[N + i] = y[i].y;
+    if (!(distance(2 * N, x, z) < 100 * 1e8 * DBL_EPSILON * largest(2 * N, x)))
+      fail_msg("angle %g: %g of %g", angle, distance(2 * N, x, z), largest(2 * N, x));
+    close_world(w);
+  }
+}
+
+/* A translation strains no spring, however stiff: only rounding of the factors stands in the way,
+ * eps times c k / m, up to 1e12. Beyond 1e16 a matrix has no room left for the masses, and pivots
+ * are lifted: what comes out is finite, or refused. */
+static void stiff_beyond_rounding_is_still_solved(void **state) {
+  (void)state;
+  enum { N = 12 * 9 };
+  world w = turned_lattice(0.3);
+  const msr_view s = msr_state_view(w.state);
+  double r[2 * N], x[2 * N];
+  for (size_t i = 0; i < 2 * N; i++) r[i] = i < N ? 1 : -2;
+  for (double c = 1; c < 1e25; c *= 100) {
+    msri_stiffness_linearise(&w.state->stiffness, NULL, s.x, s.x, c);
+    const msr_status status = msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x);
+    if (c < 1e9) assert_true(distance(2 * N, x, r) < 1e-6 + c * 1500 / 0.1 * DBL_EPSILON);
+    assert_true(status == MSR_OK ? distance(2 * N, x, r) < 10 : status == MSR_EUNSTABLE);
+  }
+  close_world(w);
+}
+
+static void nonsense_is_told(void **state) {
+  (void)state;
+  world w = turned_lattice(0);
+  const msr_view s = msr_state_view(w.state);
+  double r[2 * 12 * 9] = {1}, x[2 * 12 * 9];
+  const double odd[] = {NO_NUMBER, INFINITE, 1e300};
+  for (size_t i = 0; i < LENGTH(odd); i++) {
+    msri_stiffness_linearise(&w.state->stiffness, NULL, s.x, s.x, odd[i]);
+    assert_int_equal(msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x), MSR_EUNSTABLE);
+  }
+  r[0] = NO_NUMBER;
+  msri_stiffness_linearise(&w.state->stiffness, NULL, s.x, s.x, 1);
+  assert_int_equal(msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x), MSR_EUNSTABLE);
+  r[0] = 0;
+  must(msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x));
+  assert_true(largest(2 * s.n, x) == 0);
+  close_world(w);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(pairs_are_sorted_and_merged),
+      cmocka_unit_test(too_many_are_refused),
+      cmocka_unit_test(solutions_are_those_of_dense_matrices),
+      cmocka_unit_test(the_matrix_is_the_derivative),
+      cmocka_unit_test(factors_of_a_turned_lattice_are_exact),
+      cmocka_unit_test(stiff_beyond_rounding_is_still_solved),
+      cmocka_unit_test(nonsense_is_told),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
