@@ -68,7 +68,8 @@ static void turn(size_t n, double w, const msri_vector *restrict z, msri_vector 
   for (size_t i = 0; i < n; i++) p[i] = (msri_vector){z[i].x + w * p[i].x, z[i].y + w * p[i].y};
 }
 
-/* Rounding can make the curvature vanish near the solution; at the start only nonsense does. */
+/* Rounding can make the curvature negative near the solution; at the start only nonsense does. What
+ * is so small that its square is 0 is solved. */
 static msr_status iterate(msri_stiffness *a, double tolerance) {
   const size_t n = a->graph->n;
   double rz = msri_stiffness_precondition(a, a->residual, a->image);
@@ -76,6 +77,7 @@ static msr_status iterate(msri_stiffness *a, double tolerance) {
   for (int k = 0; k < MOST_ITERATIONS; k++) {
     const double curvature = multiply(a, a->direction, a->image);
     a->iterations++;
+    if (rz == 0 || curvature == 0) return MSR_OK;
     if (!(rz > 0 && curvature > 0)) return k > 0 ? MSR_OK : MSR_EUNSTABLE;
     if (advance(a, rz / curvature, tolerance)) return MSR_OK;
     const double next = msri_stiffness_precondition(a, a->residual, a->image);
