@@ -42,6 +42,7 @@ typedef struct finding {
   size_t n;    /* instants up to the horizon */
   double own;  /* error of the reference */
   bool parted; /* the reference goes no further */
+  bool late;   /* time was up */
 } finding;
 
 /* ---- Methods */
@@ -121,7 +122,7 @@ static size_t instants_within(const choosing *c, double share) {
 static msr_status settle(const choosing *c, finding *found) {
   const msri_measured *m = &c->longest;
   if (m->good == 0) return MSR_OK;
-  *found = (finding){*m, m->good, msri_reference_error(&c->reference), true};
+  *found = (finding){*m, m->good, msri_reference_error(&c->reference), .late = true};
   found->best.point.max = m->good_error;
   found->best.point.seconds *= share_at(c, m->good) / share_at(c, c->reference.n);
   return MSR_OK;
@@ -144,7 +145,7 @@ static msr_status stage(choosing *c, double share, finding *found, msr_error *er
   if (status == MSR_OK && !c->best.point.integrator && c->setting.watch.over)
     return settle(c, found);
   if (status != MSR_OK || !c->best.point.integrator) return status;
-  *found = (finding){c->best, c->reference.n, msri_reference_error(&c->reference), parted};
+  *found = (finding){c->best, c->reference.n, msri_reference_error(&c->reference), parted, false};
   return MSR_OK;
 }
 
@@ -199,7 +200,8 @@ static double part(const choosing *c, size_t n, double growth) {
 static msr_status choose(choosing *c, finding *found, msr_error *err) {
   c->setting.n = instants_within(c, first_share(c));
   msr_status status = stage(c, part(c, c->setting.n, 1.5), found, err);
-  if (status != MSR_OK || found->n == 0 || found->parted || found->n == c->all) return status;
+  if (status != MSR_OK || found->n == 0 || found->parted || found->late || found->n == c->all)
+    return status;
   const size_t n = second_length(c, found);
   const msri_watch *watch = &c->setting.watch;
   const bool late = msri_watch_elapsed(watch) > reference_share / 2 * watch->budget;
@@ -229,6 +231,8 @@ static void explain(const choosing *c, const finding *f, msr_accuracy_choice *ch
                 p->substeps > 1 ? "s" : "");
   if (f->parted)
     msri_format(how, sizeof how, ", up to %.4g s: beyond, no reference is that sure", tried);
+  else if (f->late)
+    msri_format(how, sizeof how, ", up to %.4g s of %.4g s, when time was up", tried, whole);
   else if (f->n < c->all && c->setting.contacts)
     msri_format(how, sizeof how, ", tried up to %.4g s of %.4g s", tried, whole);
   else if (f->n < c->all)
