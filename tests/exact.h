@@ -88,10 +88,40 @@ static inline void fall_at(double t, double *x, double *y) {
   y[0] = 7 + (1 + fallen) * gone - fallen * t;
 }
 
+/* ---- A mass that bounces on a floor at y = 1, with 0.8 of its speed each time */
+
+static inline msr_scene *make_bounce(void) {
+  msr_scene *scene = scene_of("......\n"
+                              "......\n"
+                              "......\n"
+                              "######\n",
+                              &(msr_conf){0.05, 9.8, 1, 0, 60, 60}, NULL);
+  add_mass(scene, 1, 3.2, 1.5, 0, 0.5);
+  must(msr_scene_set_contact(scene, 0.8, 0, &why));
+  return scene;
+}
+
+static inline void bounce_at(double t, double *x, double *y) {
+  double start = 0, height = 3.2, speed = 0;
+  for (;;) {
+    const double left = t - start,
+                 lands = (speed + sqrt(speed * speed + 19.6 * (height - 1))) / 9.8;
+    if (left <= lands) {
+      x[0] = 1 + 1.5 * t;
+      y[0] = height + left * (speed - 4.9 * left);
+      return;
+    }
+    speed = 0.8 * (9.8 * lands - speed);
+    start += lands;
+    height = 1;
+  }
+}
+
 static const exact exacts[] = {{"pair", 2, make_pair, pair_at},
                                {"spin", 2, make_spin, spin_at},
                                {"chain", 8, make_chain, chain_at},
-                               {"fall", 1, make_fall, fall_at}};
+                               {"fall", 1, make_fall, fall_at},
+                               {"bounce", 1, make_bounce, bounce_at}};
 
 /* ---- Errors of a run */
 

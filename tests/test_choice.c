@@ -19,6 +19,8 @@ static void choices_are_accurate(void **unused) {
       msr_scene *scene = exacts[i].make();
       const msr_accuracy_choice choice = choose(scene, asked);
       const double error = exact_error(&exacts[i], &choice.options, choice.horizon);
+      const bool impacts = choice.options.impacts == MSR_IMPACTS_LOCATED;
+      assert_true(impacts == (strcmp(exacts[i].name, "bounce") == 0));
       /* The reference of the estimate isn't exact. */
       if (error > asked || choice.error > asked || error > 1.1 * choice.error)
         fail_msg("%s: error %g, estimated %g, asked for %g: %s", exacts[i].name, error,
@@ -244,10 +246,153 @@ static void choices_are_good(void **unused) {
   }
 }
 
+/* ---- How it goes about it */
+
+static void choices_repeat(void **unused) {
+  (void)unused;
+  msr_scene *scene = hanging_cloth();
+  for (double asked = 0.1; asked > 1e-7; asked /= 10) {
+    const msr_accuracy_choice a = choose(scene, asked), b = choose(scene, asked);
+    assert_ptr_equal(a.options.integrator, b.options.integrator);
+    assert_int_equal(a.options.substeps, b.options.substeps);
+    const double x[] = {a.options.atol, a.error, a.horizon};
+    const double y[] = {b.options.atol, b.error, b.horizon};
+    assert_memory_equal(x, y, sizeof x);
+    assert_string_equal(a.reason, b.reason);
+  }
+  msr_scene_free(scene);
+}
+
+/* A run of 14 hours is tried at its beginning, and nothing is said of the rest. */
+static void long_runs_have_pilots(void **unused) {
+  (void)unused;
+  const exact *chain = &exacts[2];
+  msr_scene *scene = chain->make();
+  must(msr_scene_set_times(scene, 0.05, 1000 * 1000, 1000 * 1000, &why));
+  msr_accuracy_choice choice;
+  const msr_accuracy_options options = {.budget = 0.5};
+  must(msr_accuracy_choose(scene, 1e-3, &options, &choice, &why));
+  assert_true(choice.horizon > 0.1 && choice.horizon < 50e3);
+  assert_non_null(strstr(choice.reason, "of 5e+04 s"));
+  assert_true(exact_error(chain, &choice.options, fmin(choice.horizon, 2)) <= 1e-3);
+  msr_scene_free(scene);
+}
+
+/* Chaos: as far as the reference goes, and no further. */
+static void choices_have_horizons(void **unused) {
+  (void)unused;
+  msr_scene *scene = pendulum();
+  double x = 2;
+  for (size_t i = 1; i < 4; i++) {
+    add_mass(scene, x += 1, 0, 0, 0, 0.1);
+    must(msr_scene_add_spring(scene, i - 1, i, 100, 1, &why));
+  }
+  must(msr_scene_set_times(scene, 0.02, 2000, 2000, &why));
+  const msr_accuracy_choice choice = choose(scene, 0.01);
+  assert_true(choice.horizon > 1 && choice.horizon < 30);
+  assert_true(choice.error <= 0.01);
+  const msr_plan_options fine = {.integrator = &msr_integrator_rk8pd, .atol = 1e-13};
+  const track a = run(scene, &choice.options), b = run(scene, &fine);
+  assert_true(apart(&a, &b, (uint64_t)(choice.horizon / 0.02 + 0.5)) <= 0.01);
+  free(a.q);
+  free(b.q);
+  msr_scene_free(scene);
+}
+
+static void only_what_is_given_is_chosen(void **unused) {
+  (void)unused;
+  const msr_integrator mine = msr_integrator_rk4;
+  const msr_integrator *const list[] = {&msr_integrator_symplectic_euler, &mine};
+  msr_scene *scene = free_block();
+  msr_accuracy_choice choice;
+  must(msr_accuracy_choose(scene, 1e-5,
+                           &(msr_accuracy_options){.integrators = list, .n_integrators = 2},
+                           &choice, &why));
+  assert_ptr_equal(choice.options.integrator, &mine);
+  msr_scene_free(scene);
+}
+
+/* When time is up, the run that was accurate for longest, and for how long. */
+static void time_may_be_up(void **unused) {
+  (void)unused;
+  static const msr_integrator *const euler[] = {&msr_integrator_euler};
+  const msr_accuracy_options options = {.integrators = euler, .n_integrators = 1, .budget = 0.5};
+  msr_scene *scene = free_block();
+  msr_accuracy_choice choice;
+  must(msr_accuracy_choose(scene, 1e-5, &options, &choice, &why));
+  assert_true(choice.horizon >= 0.01 && choice.horizon < 0.5);
+  const msr_plan_options fine = {.integrator = &msr_integrator_rk8pd, .atol = 1e-13};
+  const track a = run(scene, &choice.options), b = run(scene, &fine);
+  assert_true(apart(&a, &b, (uint64_t)(choice.horizon / 0.01 + 0.5)) <= 1e-5);
+  free(a.q);
+  free(b.q);
+  msr_scene_free(scene);
+}
+
+/* ---- What isn't possible */
+
+static void refused(const msr_scene *scene, double error, const msr_accuracy_options *options,
+                    msr_status status, const char *word) {
+  msr_accuracy_choice choice;
+  msr_error err;
+  assert_int_equal(msr_accuracy_choose(scene, error, options, &choice, &err), status);
+  assert_int_equal(err.status, status);
+  if (!strstr(err.message, word)) fail_msg("'%s' isn't in '%s'", word, err.message);
+  assert_int_equal(msr_accuracy_choose(scene, error, options, &choice, NULL), status);
+}
+
+static msr_status stop(void *data, const msr_accuracy_progress *progress) {
+  const char *word = data;
+  return strncmp(progress->text, word, strlen(word)) == 0 ? MSR_EIO : MSR_OK;
+}
+
+static void what_cannot_be_is_refused(void **unused) {
+  (void)unused;
+  static char reference[] = "reference", choosing[] = "choosing";
+  msr_scene *scene = free_block(), *empty = empty_scene(0.1);
+  refused(scene, 0, NULL, MSR_EUSAGE, "above 0");
+  refused(scene, NO_NUMBER, NULL, MSR_EUSAGE, "above 0");
+  refused(scene, INFINITE, NULL, MSR_EUSAGE, "above 0");
+  refused(scene, 1, &(msr_accuracy_options){.budget = -1}, MSR_EUSAGE, "budget");
+  refused(empty, 1, NULL, MSR_EINPUT, "no mass");
+  refused(scene, 1e-17, NULL, MSR_EUNSTABLE, "no reference");
+  refused(scene, 1, &(msr_accuracy_options){.poll = stop, .data = reference}, MSR_EIO, "stopped");
+  refused(scene, 1, &(msr_accuracy_options){.poll = stop, .data = choosing}, MSR_EIO, "stopped");
+  refused(scene, 1, &(msr_accuracy_options){.budget = 1e-9}, MSR_EUNSTABLE, "budget");
+  msr_scene_free(scene);
+  msr_scene_free(empty);
+}
+
+/* ---- Memory */
+
+static msr_scene *attempted;
+static int wrong;
+
+static bool attempt(void) {
+  static const msr_integrator *const two[] = {&msr_integrator_verlet, &msr_integrator_rk4};
+  msr_accuracy_choice choice;
+  msr_error err = {MSR_OK, ""};
+  const msr_accuracy_options options = {.integrators = two, .n_integrators = 2};
+  const msr_status status = msr_accuracy_choose(attempted, 0.1, &options, &choice, &err);
+  wrong += status != MSR_OK && (status != MSR_ENOMEM || !strstr(err.message, "out of memory"));
+  return status == MSR_OK;
+}
+
+static void memory_may_fail(void **unused) {
+  (void)unused;
+  attempted = make_pair();
+  assert_true(alloc_fail_each(attempt) > 20);
+  assert_int_equal(wrong, 0);
+  msr_scene_free(attempted);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(choices_are_accurate),
-      cmocka_unit_test(choices_are_good),
+      cmocka_unit_test(choices_are_accurate),  cmocka_unit_test(choices_are_good),
+      cmocka_unit_test(choices_repeat),        cmocka_unit_test(long_runs_have_pilots),
+      cmocka_unit_test(choices_have_horizons), cmocka_unit_test(only_what_is_given_is_chosen),
+      cmocka_unit_test(time_may_be_up),        cmocka_unit_test(what_cannot_be_is_refused),
+      cmocka_unit_test(memory_may_fail),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,7 +34,7 @@ msr_status msri_aim_begin(const msri_setting *setting, const msr_integrator *int
       .coarsest = coarsest,
       .r = first,
       .done = substeps == 0,
-      .cost = msri_ladder_cost(setting, integrator, iterations, substeps),
+      .cost = msri_trial_foretell(setting, integrator, iterations, substeps),
   };
   return MSR_OK;
 }

@@ -4,9 +4,10 @@
  * promises to be the cheapest is always the next, until none can be cheaper than the best that was
  * as accurate as asked. Over the whole run that is a proof: the run to come is the one that was
  * tried. If the whole is too long for the budget, this is done on its beginning, then on as much
- * as can be afforded, with those that are still in question, and errors are taken to grow on as
- * they did: e ~ t^g with g as measured, but at least 1 for symplectic methods and 2 for others, and
- * twice that to be safe; with supports nothing is promised beyond what was tried.
+ * as can be afforded, with those that are still in question; a smaller error is aimed at then, so
+ * that there is room for it to grow as it did: e ~ t^g with g as measured, but at least 1 for
+ * symplectic methods and 2 for others. That is no promise, though: beyond what was tried a mass may
+ * meet a support, or a lattice buckle.
  *
  * Costs are counted in calls of forces, and planned by the time that they take on a common machine,
  * so that the choice is the same again. */
@@ -41,6 +42,7 @@ typedef struct finding {
   size_t n;    /* instants up to the horizon */
   double own;  /* error of the reference */
   bool parted; /* the reference goes no further */
+  bool late;   /* time was up */
 } finding;
 
 /* ---- Methods */
@@ -120,7 +122,7 @@ static size_t instants_within(const choosing *c, double share) {
 static msr_status settle(const choosing *c, finding *found) {
   const msri_measured *m = &c->longest;
   if (m->good == 0) return MSR_OK;
-  *found = (finding){*m, m->good, msri_reference_error(&c->reference), true};
+  *found = (finding){*m, m->good, msri_reference_error(&c->reference), .late = true};
   found->best.point.max = m->good_error;
   found->best.point.seconds *= share_at(c, m->good) / share_at(c, c->reference.n);
   return MSR_OK;
@@ -143,7 +145,7 @@ static msr_status stage(choosing *c, double share, finding *found, msr_error *er
   if (status == MSR_OK && !c->best.point.integrator && c->setting.watch.over)
     return settle(c, found);
   if (status != MSR_OK || !c->best.point.integrator) return status;
-  *found = (finding){c->best, c->reference.n, msri_reference_error(&c->reference), parted};
+  *found = (finding){c->best, c->reference.n, msri_reference_error(&c->reference), parted, false};
   return MSR_OK;
 }
 
@@ -198,7 +200,8 @@ static double part(const choosing *c, size_t n, double growth) {
 static msr_status choose(choosing *c, finding *found, msr_error *err) {
   c->setting.n = instants_within(c, first_share(c));
   msr_status status = stage(c, part(c, c->setting.n, 1.5), found, err);
-  if (status != MSR_OK || found->n == 0 || found->parted || found->n == c->all) return status;
+  if (status != MSR_OK || found->n == 0 || found->parted || found->late || found->n == c->all)
+    return status;
   const size_t n = second_length(c, found);
   const msri_watch *watch = &c->setting.watch;
   const bool late = msri_watch_elapsed(watch) > reference_share / 2 * watch->budget;
@@ -212,18 +215,9 @@ static msr_status choose(choosing *c, finding *found, msr_error *err) {
 
 /* ---- The choice */
 
-/* The largest error at a share of the run that is at or beyond what was tried. */
-static double foretold(const choosing *c, const finding *f, double share) {
-  const double tried = share_at(c, f->n), error = f->best.point.max + f->own;
-  return share > tried ? 2 * error * pow(share / tried, growth_of(f)) : error;
-}
-
-/* Share of the run over which the error can be promised. */
-static double promised(const choosing *c, const finding *f) {
-  const double tried = share_at(c, f->n);
-  if (f->n == c->all || f->parted || c->setting.contacts) return tried;
-  const double most = tried * pow(c->error / foretold(c, f, tried * (1 + 1e-9)), 1 / growth_of(f));
-  return msri_min(1, msri_max(tried, most));
+/* The largest error at the end of the run, if it goes on growing as it did. */
+static double foretold(const choosing *c, const finding *f) {
+  return (f->best.point.max + f->own) * pow(share_at(c, f->n), -growth_of(f));
 }
 
 static void explain(const choosing *c, const finding *f, msr_accuracy_choice *choice) {
@@ -237,8 +231,13 @@ static void explain(const choosing *c, const finding *f, msr_accuracy_choice *ch
                 p->substeps > 1 ? "s" : "");
   if (f->parted)
     msri_format(how, sizeof how, ", up to %.4g s: beyond, no reference is that sure", tried);
-  else if (f->n < c->all)
+  else if (f->late)
+    msri_format(how, sizeof how, ", up to %.4g s of %.4g s, when time was up", tried, whole);
+  else if (f->n < c->all && c->setting.contacts)
     msri_format(how, sizeof how, ", tried up to %.4g s of %.4g s", tried, whole);
+  else if (f->n < c->all)
+    msri_format(how, sizeof how, ", tried up to %.4g s of %.4g s; if it grows on likewise, %.2g px",
+                tried, whole, foretold(c, f));
   msri_format(choice->reason, sizeof choice->reason,
               "%s with %s takes the least work for %g px: largest error %.2g px%s",
               p->integrator->name, step, c->error, choice->error, how);
@@ -254,11 +253,11 @@ static msr_status conclude(const choosing *c, const finding *f, msr_accuracy_cho
     return msri_fail(err, MSR_EUNSTABLE,
                      "nothing tried is within %g px; ask for a larger error, or for less time",
                      c->error);
-  const double share = promised(c, f);
+  const double share = share_at(c, f->n);
   *choice = (msr_accuracy_choice){
       .options = msri_setting_options(&c->setting, p->integrator, p->substeps, p->atol),
-      .error = foretold(c, f, share),
-      .seconds = p->seconds / share_at(c, f->n),
+      .error = p->max + f->own,
+      .seconds = p->seconds / share,
       .horizon = share * c->setting.until,
   };
   explain(c, f, choice);

@@ -17,16 +17,6 @@ msr_plan_options msri_ladder_tolerance(const msri_setting *setting,
   return msri_setting_options(setting, integrator, many ? (uint64_t)substeps : 1, atol);
 }
 
-/* An adaptive method takes steps of about Verlet's, some ten evaluations each. */
-double msri_ladder_cost(const msri_setting *setting, const msr_integrator *integrator,
-                        uint64_t iterations, uint64_t substeps) {
-  static const double unknown = 10;
-  const msr_plan_figures verlet = msr_plan_describe(setting->plan);
-  const double n = (double)iterations;
-  if (integrator->adaptive) return unknown * n * msri_max(1, verlet.dt / verlet.stable_step);
-  return n * (double)substeps * (integrator->evaluations > 0 ? integrator->evaluations : unknown);
-}
-
 msr_status msri_ladder_begin(const msri_setting *setting, const msr_integrator *integrator,
                              uint64_t iterations, msri_ladder *ladder, msr_error *err) {
   *ladder = (msri_ladder){.integrator = integrator};
@@ -37,7 +27,7 @@ msr_status msri_ladder_begin(const msri_setting *setting, const msr_integrator *
   ladder->options = integrator->adaptive
                         ? msri_ladder_tolerance(setting, integrator, MSRI_COARSEST_ATOL)
                         : msri_setting_options(setting, integrator, ladder->stable, 0);
-  ladder->cost = msri_ladder_cost(setting, integrator, iterations, ladder->stable);
+  ladder->cost = msri_trial_foretell(setting, integrator, iterations, ladder->stable);
   return MSR_OK;
 }
 

@@ -3,15 +3,11 @@
 #ifndef MSRI_LADDER_H
 #define MSRI_LADDER_H
 
-#include "accuracy/setting.h"
+#include "accuracy/trial.h"
 
 #define MSRI_COARSEST_ATOL 0.1 /* [px] */
 #define MSRI_FINEST_ATOL   0.5e-13
 #define MSRI_MOST_SUBSTEPS 1e9
-
-/* What a run may cost, where none was made. */
-double msri_ladder_cost(const msri_setting *setting, const msr_integrator *integrator,
-                        uint64_t iterations, uint64_t substeps);
 
 /* Options of an adaptive run. */
 msr_plan_options msri_ladder_tolerance(const msri_setting *setting,

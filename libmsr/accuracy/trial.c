@@ -7,26 +7,50 @@
  * evaluation, and solves by iterations. */
 static const double outer_cost = 0.1, step_cost = 0.3, matrix_cost = 16, iteration_cost = 6;
 
-static double calls(const msr_state *state) {
-  const msr_plan *plan = state->plan;
-  double cost = 0;
-  for (size_t e = 0; e < plan->n_effects && plan->effect[e].on; e++) {
-    const msr_force *force = plan->effect[e].force;
-    const bool outer = force && force->conservative && force != &msr_force_springs;
-    cost += (outer ? outer_cost : 1) * (double)state->calls[e];
-  }
-  return cost;
+static bool is_outer(const msr_force *force) {
+  return force && force->conservative && force != &msr_force_springs;
 }
 
 double msri_trial_cost(const msr_state *state) {
-  const msr_integrator *integrator = state->plan->figures.integrator;
+  const msr_plan *plan = state->plan;
+  const msr_integrator *integrator = plan->figures.integrator;
   const double order = integrator->order, steps = (double)state->work.steps;
-  double cost = calls(state) + step_cost * steps;
+  double cost = step_cost * steps;
+  for (size_t e = 0; e < plan->n_effects && plan->effect[e].on; e++)
+    cost += (is_outer(plan->effect[e].force) ? outer_cost : 1) * (double)state->calls[e];
   if (integrator->adaptive) cost += order * order / 12 * steps;
   if (integrator->implicit)
     cost += matrix_cost * (double)state->evaluations +
             iteration_cost * (double)state->stiffness.iterations;
   return cost;
+}
+
+/* Calls of an effect in a step. Of flows there are two or, where a composition of Verlet's keeps
+ * its order in air, two to an evaluation. */
+static double calls_of(const msr_effect *effect, const msr_integrator *integrator,
+                       double per_step) {
+  if (!effect->force) return 1;
+  if (!effect->force->uses_velocity || !integrator->splits) return per_step;
+  return integrator->damped_order == 0 ? 2 * per_step : 2;
+}
+
+/* An adaptive method takes steps of about Verlet's, of some ten evaluations; an implicit one
+ * iterates some three times. */
+double msri_trial_foretell(const msri_setting *setting, const msr_integrator *integrator,
+                           uint64_t iterations, uint64_t substeps) {
+  const msr_plan *plan = setting->plan;
+  const msr_plan_figures *verlet = &plan->figures;
+  const double order = integrator->order, declared = integrator->evaluations;
+  const double per_step = declared > 0 ? declared : integrator->implicit ? 3 : 10;
+  double cost = step_cost;
+  for (size_t e = 0; e < plan->n_effects && plan->effect[e].on; e++)
+    cost += (is_outer(plan->effect[e].force) ? outer_cost : 1) *
+            calls_of(&plan->effect[e], integrator, per_step);
+  if (integrator->adaptive) cost += order * order / 12;
+  if (integrator->implicit) cost += per_step * (matrix_cost + 2 * iteration_cost);
+  const double steps =
+      integrator->adaptive ? msri_max(1, verlet->dt / verlet->stable_step) : (double)substeps;
+  return cost * steps * (double)iterations;
 }
 
 msr_status msri_trial_open(msri_setting *setting, const msr_plan_options *options,

@@ -9,6 +9,10 @@
  * and plans don't depend on one. */
 double msri_trial_cost(const msr_state *state);
 
+/* The same of a run that hasn't been made, about. */
+double msri_trial_foretell(const msri_setting *setting, const msr_integrator *integrator,
+                           uint64_t iterations, uint64_t substeps);
+
 /* A run under way. */
 typedef struct msri_trial {
   msr_plan *plan;
