@@ -352,7 +352,7 @@ static void check_refusals(const msr_integrator *integrator) {
   double q = 1, v = 2;
   msr_error err;
   assert_int_equal(msr_integrate(integrator, &system, 0, 0.1, 3, &q, &v, &err), MSR_EUNSTABLE);
-  assert_non_null(strstr(err.message, "no finite solution"));
+  assert_non_null(strstr(err.message, "beyond what numbers can hold"));
   system.acceleration = refuse;
   assert_int_equal(msr_integrate(integrator, &system, 0, 0.1, 3, &q, &v, &err), MSR_EINTR);
   assert_true(q == 1 && v == 2);

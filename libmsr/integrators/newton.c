@@ -113,8 +113,8 @@ static void move(newton *s, int k, double *d) {
 static msr_status give_up(const newton *s, msr_error *err) {
   if (!isfinite(s->size))
     return msri_fail(err, MSR_EUNSTABLE,
-                     "the equations of a step have no finite solution: take smaller steps (more "
-                     "substeps), or look for a force or a value that is too large");
+                     "the equations of a step are beyond what numbers can hold: take smaller steps "
+                     "(more substeps), or look for a force or a value that is too large");
   return msri_fail(err, MSR_EUNSTABLE,
                    "the equations of a step weren't solved in %d iterations (the last one moved "
                    "something by %.3g): take smaller steps (more substeps)",

@@ -4,11 +4,11 @@
  * rows and columns decouple into chains, which have none: there it is exact.
  *
  * Elimination of mass i with pivot d leaves of its tie s to mass j what is left of two springs in a
- * row, s d^-1 (d - s). That is positive where s and d - s are, so that no pivot falls below its
- * mass but by rounding or by springs that push. */
+ * row, s d^-1 (d - s), which is positive where s and d - s are. Springs that push take less than
+ * half of a mass. So no pivot vanishes until c k / m nears 1e16, where a number has no room for the
+ * mass beside the spring; then no solution is found. */
 #include "solvers/stiffness.h"
 
-#include <math.h>
 #include <string.h>
 
 static void start_pivots(msri_stiffness *a) {
@@ -22,20 +22,9 @@ static void start_pivots(msri_stiffness *a) {
   }
 }
 
-/* Raises both eigenvalues of d by what the lower one is below `least`. */
-static void lift(msri_block *d, double least) {
-  const double middle = (d->xx + d->yy) / 2, half = (d->xx - d->yy) / 2;
-  const double missing = least - (middle - sqrt(half * half + d->xy * d->xy));
-  d->xx += missing;
-  d->yy += missing;
-}
-
-/* d^-1, after lifting it if it isn't above `least`. */
-static msri_block invert(msri_block *d, double least) {
-  const double xx = d->xx - least, yy = d->yy - least;
-  if (!(xx > 0 && xx * yy > d->xy * d->xy)) lift(d, least);
-  const double scale = 1 / (d->xx * d->yy - d->xy * d->xy);
-  return (msri_block){d->yy * scale, -d->xy * scale, d->xx * scale};
+static msri_block invert(msri_block d) {
+  const double scale = 1 / (d.xx * d.yy - d.xy * d.xy);
+  return (msri_block){d.yy * scale, -d.xy * scale, d.xx * scale};
 }
 
 /* The symmetric part of s d^-1 (d - s), with l = s d^-1. */
@@ -47,12 +36,11 @@ static msri_block in_a_row(msri_square l, msri_block d, msri_block s) {
 
 void msri_stiffness_factorise(msri_stiffness *a) {
   const uint32_t *begin = a->graph->begin, *end = a->graph->end;
-  const double share = 0.05; /* of a mass: half of what springs that push may leave of it */
   start_pivots(a);
   for (size_t i = 0; i < a->graph->n; i++) {
     msri_block d = a->pivot[i];
     for (size_t p = begin[i]; p < begin[i + 1]; p++) d = msri_block_sum(d, a->tie[p]);
-    const msri_block inverse = invert(&d, share * a->m[i * a->m_stride]);
+    const msri_block inverse = invert(d);
     for (size_t p = begin[i]; p < begin[i + 1]; p++) {
       msri_block *pivot = &a->pivot[end[p]];
       a->lower[p] = msri_block_product(a->tie[p], inverse);

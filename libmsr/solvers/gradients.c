@@ -50,8 +50,8 @@ static double multiply(const msri_stiffness *a, const msri_vector *p, msri_vecto
   return py;
 }
 
-/* x += w p, residual -= w y; is |M^-1 residual| <= tolerance |x| now? */
-static bool advance(msri_stiffness *a, double w, double tolerance) {
+/* x += w p, residual -= w y. Returns |M^-1 residual|^2 / |x|^2. */
+static double advance(msri_stiffness *a, double w) {
   msri_vector *restrict x = a->x, *restrict r = a->residual;
   const msri_vector *restrict p = a->direction, *restrict y = a->image;
   double rr = 0, xx = 0;
@@ -61,30 +61,32 @@ static bool advance(msri_stiffness *a, double w, double tolerance) {
     xx += msri_product(x[i], x[i]);
     rr += a->weight[i * a->m_stride] * msri_product(r[i], r[i]);
   }
-  return rr <= tolerance * tolerance * xx;
+  return rr / xx;
 }
 
 static void turn(size_t n, double w, const msri_vector *restrict z, msri_vector *restrict p) {
   for (size_t i = 0; i < n; i++) p[i] = (msri_vector){z[i].x + w * p[i].x, z[i].y + w * p[i].y};
 }
 
-/* Rounding can make the curvature negative near the solution; at the start only nonsense does. What
- * is so small that its square is 0 is solved. */
+/* Rounding ends it before the tolerance is met where c k / m is huge: what is rough will still do.
+ * What is so small that its square is 0 is solved. */
 static msr_status iterate(msri_stiffness *a, double tolerance) {
+  static const double rough = 0.1;
   const size_t n = a->graph->n;
-  double rz = msri_stiffness_precondition(a, a->residual, a->image);
+  double rz = msri_stiffness_precondition(a, a->residual, a->image), error = INFINITY;
   memcpy(a->direction, a->image, n * sizeof *a->direction);
   for (int k = 0; k < MOST_ITERATIONS; k++) {
     const double curvature = multiply(a, a->direction, a->image);
     a->iterations++;
     if (rz == 0 || curvature == 0) return MSR_OK;
-    if (!(rz > 0 && curvature > 0)) return k > 0 ? MSR_OK : MSR_EUNSTABLE;
-    if (advance(a, rz / curvature, tolerance)) return MSR_OK;
+    if (!(rz > 0 && curvature > 0)) break;
+    error = advance(a, rz / curvature);
+    if (error <= tolerance * tolerance) return MSR_OK;
     const double next = msri_stiffness_precondition(a, a->residual, a->image);
     turn(n, next / rz, a->image, a->direction);
     rz = next;
   }
-  return MSR_OK;
+  return error <= rough * rough ? MSR_OK : MSR_EUNSTABLE;
 }
 
 msr_status msri_stiffness_solve(msri_stiffness *a, const double *r, double tolerance, double *x) {

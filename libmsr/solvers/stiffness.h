@@ -26,7 +26,8 @@ typedef struct msri_stiffness {
 size_t msri_stiffness_bytes(const msri_graph *graph, size_t anchors, size_t m_stride);
 msri_stiffness msri_stiffness_place(const msri_graph *graph, const msr_view *s, void *memory);
 
-/* As linearise and solve of msr_system. MSR_EUNSTABLE if A is no matrix of finite numbers. */
+/* As linearise and solve of msr_system. MSR_EUNSTABLE if rounding
+ * leaves not even one digit of x. */
 void msri_stiffness_linearise(msri_stiffness *a, const double *q0, const double *from,
                               const double *q, double c);
 msr_status msri_stiffness_solve(msri_stiffness *a, const double *r, double tolerance, double *x);
