@@ -69,9 +69,10 @@ static void print_tics(FILE *out, char axis, const range *r) {
   if (r->to / r->from > 1e3) return;
   fprintf(out, "set format %c '%%g'\nset %ctics (", axis, axis);
   const char *separator = "";
-  for (double decade = pow(10, floor(log10(r->from))); decade < r->to; decade *= 10) {
+  const int first = (int)floor(log10(r->from)), last = (int)floor(log10(r->to));
+  for (int decade = first; decade <= last; decade++) {
     for (int i = 0; i < 3; i++, separator = ", ") {
-      fprintf(out, "%s%g", separator, steps[i] * decade);
+      fprintf(out, "%s%g", separator, steps[i] * pow(10, decade));
     }
   }
   fputs(")\n", out);
