@@ -8,6 +8,7 @@
 #include "machine.h"
 
 #include <fcntl.h>
+#include <math.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -62,6 +63,21 @@ static void print_footer(FILE *out) {
 
 /* ---- Axes */
 
+/* Powers of ten would be too few for less than three decades: 1, 2, 5, 10, 20 ... */
+static void print_tics(FILE *out, char axis, const range *r) {
+  static const double steps[] = {1, 2, 5};
+  if (r->to / r->from > 1e3) return;
+  fprintf(out, "set format %c '%%g'\nset %ctics (", axis, axis);
+  const char *separator = "";
+  const int first = (int)floor(log10(r->from)), last = (int)floor(log10(r->to));
+  for (int decade = first; decade <= last; decade++) {
+    for (int i = 0; i < 3; i++, separator = ", ") {
+      fprintf(out, "%s%g", separator, steps[i] * pow(10, decade));
+    }
+  }
+  fputs(")\n", out);
+}
+
 static void print_axes(FILE *out, const study *st) {
   const double own = st->figures.reference_error;
   const range x = curves_errors(st), y = curves_times(st);
@@ -73,11 +89,13 @@ static void print_axes(FILE *out, const study *st) {
         " font ',10'\n"
         "set bmargin 5\n",
         out);
+  print_tics(out, 'x', &x);
+  print_tics(out, 'y', &y);
   if (!(own > x.from)) return;
   fprintf(out,
           "set arrow from first %g, graph 0 to first %g, graph 1 nohead dashtype 2"
           " linecolor '#606060'\n"
-          "set label 2 'the reference''s own error' at first %g, graph 0.97 right rotate by 90"
+          "set label 2 'the reference''s own error' at first %g, graph 0.03 left rotate by 90"
           " offset -1.5,0 textcolor '#606060' font ',9'\n",
           own, own, own);
 }

@@ -40,8 +40,8 @@ const option all_options[] = {
      FIELD(atol)},
     {0, "rtol", "TOL", "added to it: a share of the largest number (0)", FOR_RUNS, &a_positive,
      FIELD(rtol)},
-    {0, "impacts", "kept|located", "at supports: energy kept, or the order (kept)", FOR_RUNS, &a_rule,
-     FIELD(impacts)},
+    {0, "impacts", "kept|located", "at supports: energy kept, or the order (kept)", FOR_RUNS,
+     &a_rule, FIELD(impacts)},
 
     {0, "until", "T", "how much of the scene is compared, in s (all)", FOR_ACCURACY, &a_positive,
      FIELD(until), .group = "Study"},
