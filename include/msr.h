@@ -393,8 +393,10 @@ MSR_API extern const msr_integrator msr_integrator_energy_momentum;
 /* All of the above, then NULL. */
 MSR_API extern const msr_integrator *const msr_integrators[];
 
-/* Steps any system, scene or none: q and v [system->n] from time t by `steps` steps of h.
- * MSR_ENOMEM, what the integrator finds wrong, or what the system's callbacks return. */
+/* Steps any system, scene or none: q and v [system->n] from time t by `steps` steps of h, which may
+ * be negative. Explicit methods don't look at the result, which isn't finite if a isn't or h is far
+ * too large. MSR_EUSAGE if t or h isn't finite, MSR_ENOMEM, what the integrator finds wrong, or
+ * what the system's callbacks return. */
 MSR_API msr_status msr_integrate(const msr_integrator *integrator, const msr_system *system,
                                  double t, double h, uint64_t steps, double *q, double *v,
                                  msr_error *err);

@@ -278,6 +278,25 @@ static void stages_are_at_t_plus_c_h(void **state) {
     assert_true(msr_interval_time(&interval, shares[n]) == 0.1 + shares[n] * 0.2);
 }
 
+/* Steps of length 0 leave all as it is; what isn't finite is refused. */
+static void check_odd_steps(const msr_integrator *integrator) {
+  counted c = {.omega = 1};
+  const msr_system system = system_of(&plains[1], &c);
+  const double odd[] = {INFINITE, -INFINITE, NAN};
+  double z[2] = {0.3, -0.2};
+  must(msr_integrate(integrator, &system, 0, 0, 3, z, z + 1, &why));
+  for (size_t i = 0; i < LENGTH(odd); i++) {
+    assert_int_equal(msr_integrate(integrator, &system, 0, odd[i], 1, z, z + 1, NULL), MSR_EUSAGE);
+    assert_int_equal(msr_integrate(integrator, &system, odd[i], 1, 1, z, z + 1, NULL), MSR_EUSAGE);
+  }
+  assert_true(z[0] == 0.3 && z[1] == -0.2);
+}
+
+static void odd_steps_do_nothing(void **state) {
+  (void)state;
+  on_all(check_odd_steps);
+}
+
 /* ---- Reversibility */
 
 static void flip(size_t n, double *v) {
@@ -472,6 +491,7 @@ int main(void) {
       cmocka_unit_test(errors_are_proportional_to_the_tolerance),
       cmocka_unit_test(a_composition_beyond_the_step_keeps_its_order),
       cmocka_unit_test(stages_are_at_t_plus_c_h),
+      cmocka_unit_test(odd_steps_do_nothing),
       cmocka_unit_test(flipping_v_retraces_the_path_if_declared),
       cmocka_unit_test(areas_are_kept_if_declared),
       cmocka_unit_test(steps_take_the_declared_evaluations),

@@ -55,7 +55,7 @@ static msr_status solve_stage(const stages *s, int i, const msri_stage *at, msr_
   stage.known = known;
   stage.weight = own;
   const msr_status status = msri_newton(&stage, s->memory, s->object, d, err);
-  for (size_t m = 0; m < n; m++) d[m] = (d[m] - known[m]) / own;
+  for (size_t m = 0; m < n; m++) d[m] = own > 0 ? (d[m] - known[m]) / own : 0;
   return status;
 }
 

@@ -5,6 +5,7 @@
 #include "run/guard.h"
 #include "run/impacts.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,6 +29,10 @@ msr_status msr_integrate(const msr_integrator *integrator, const msr_system *sys
                          double h, uint64_t steps, double *q, double *v, msr_error *err) {
   msr_workspace work = {0};
   msr_error said = {MSR_OK, ""};
+  if (!isfinite(t) || !isfinite(h))
+    return msri_fail(err, MSR_EUSAGE, "%s: t is %g and h %g; both must be finite", integrator->name,
+                     t, h);
+  if (h == 0) steps = 0;
   work.vector =
       msri_alloc(integrator->vectors * system->n, sizeof *work.vector, "an integrator", err);
   if (!work.vector) return MSR_ENOMEM;
