@@ -5,7 +5,7 @@
  * motion is smooth. What supports do costs all methods their order, unless impacts are few; there
  * a pair that is cheap per step may be more exact. The pair that begins best is refined. Where
  * explicit methods need many steps an iteration, implicit ones may tell the truth sooner; and where
- * there is no time for those, they are all there is. */
+ * there is no time for those of high order, cheaper ones may reach further. */
 #include "accuracy/duel.h"
 
 #include <math.h>
@@ -134,10 +134,10 @@ static msr_status try_all(quest *q, msr_error *err) {
   msr_status status = MSR_OK;
   if (many && quickly(q)) status = refine(q, &stiff, 0, explicit_cost * steps, err);
   if (status == MSR_OK && !good_enough(q)) status = try_explicit(q, pair, n, err);
-  if (status != MSR_OK || !many || q->best.parted || halfway(q)) return status;
+  if (status != MSR_OK || q->best.parted || halfway(q)) return status;
   q->share *= 2;
   q->spent = 0;
-  return refine(q, &stiff, 0, HUGE_VAL, err);
+  return many ? refine(q, &stiff, 0, HUGE_VAL, err) : quickly(q) ? MSR_OK : try(q, pair, 0, err);
 }
 
 msr_status msri_reference_find(msri_setting *setting, const msri_reference_goal *goal,
