@@ -298,7 +298,10 @@ static void nonsense_is_told(void **state) {
   r[0] = NO_NUMBER;
   msri_stiffness_linearise(&w.state->stiffness, NULL, s.x, s.x, 1);
   assert_int_equal(msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x), MSR_EUNSTABLE);
-  r[0] = 0;
+  for (r[0] = 1; r[0] > 0; r[0] *= 1e-50) { /* down to what is no normal number, and 0 */
+    must(msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x));
+    assert_true(r[0] < DBL_MIN ? largest(2 * s.n, x) == 0 : x[0] > 1e-6 * r[0] && x[0] <= r[0]);
+  }
   must(msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x));
   assert_true(largest(2 * s.n, x) == 0);
   close_world(w);

@@ -41,9 +41,25 @@ static void products_are_those_of_a_plain_loop(void **state) {
   }
 }
 
+static void the_largest_is_found_wherever_it_is(void **state) {
+  (void)state;
+  uint64_t dice = 3;
+  const double odd[] = {NO_NUMBER, INFINITE, -INFINITE};
+  double x[MOST];
+  assert_true(msri_largest(0, x) == 0);
+  for (size_t i = 0; i < MOST; i++) {
+    fill(x, &dice);
+    x[i] = i % 2 ? 11 : -11;
+    assert_true(msri_largest(MOST, x) == 11);
+    x[i] = odd[i % 3];
+    assert_false(isfinite(msri_largest(MOST, x)));
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sums_are_those_of_a_plain_loop),
+      cmocka_unit_test(the_largest_is_found_wherever_it_is),
       cmocka_unit_test(products_are_those_of_a_plain_loop),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

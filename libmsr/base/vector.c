@@ -4,6 +4,8 @@
 
 #include "base/machine.h"
 
+#include <math.h>
+
 MSRI_INLINE void add_scaled(size_t n, double c, const double *restrict x, double *restrict y) {
   for (size_t i = 0; i < n; i++) y[i] += c * x[i];
 }
@@ -39,4 +41,14 @@ void msri_scale(size_t n, double c, double *y) {
   }
 #endif
   scale(n, c, y);
+}
+
+double msri_largest(size_t n, const double *x) {
+  double most = 0, sound = 0;
+  for (size_t i = 0; i < n; i++) {
+    const double size = fabs(x[i]);
+    most = size > most ? size : most;
+    sound += 0 * size;
+  }
+  return most + sound;
 }

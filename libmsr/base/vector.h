@@ -10,4 +10,7 @@ void msri_add_scaled(size_t n, double c, const double *restrict x, double *restr
 /* y[n] *= c. */
 void msri_scale(size_t n, double c, double *y);
 
+/* The largest |x[i]|; no finite number if one isn't. */
+double msri_largest(size_t n, const double *x);
+
 #endif

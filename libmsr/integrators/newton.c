@@ -10,6 +10,7 @@
  * in the velocity, so that the energy is kept to rounding however stiff the springs are. */
 #include "integrators/newton.h"
 
+#include "base/vector.h"
 #include "integrators/krylov.h"
 
 #include <float.h>
@@ -37,16 +38,6 @@ msr_status msri_newton_open(const msr_integrator *self, const msr_system *system
   if (system->linearise && system->solve) return MSR_OK;
   *object = msri_alloc(MSRI_KRYLOV_VECTORS * system->n, sizeof(double), self->name, err);
   return *object ? MSR_OK : MSR_ENOMEM;
-}
-
-/* Largest |a[i]|; no finite number if one isn't. */
-static double largest(size_t n, const double *a) {
-  double most = 0, sound = 0;
-  for (size_t i = 0; i < n; i++) {
-    most = msri_max(most, fabs(a[i]));
-    sound += 0 * a[i];
-  }
-  return most + sound;
 }
 
 /* At q = q0 + d: the residual, and the correction p. */
@@ -133,7 +124,7 @@ msr_status msri_newton(const msri_stage *stage, double *memory, void *object, do
               .residual = memory + 4 * n,
               .least = INFINITY};
   for (size_t i = 0; i < n; i++) s.q[i] = stage->q0[i] + d[i];
-  s.rounding = 2 * DBL_EPSILON * largest(n, s.q);
+  s.rounding = 2 * DBL_EPSILON * msri_largest(n, s.q);
   for (int k = 0; k < MOST_ITERATIONS; k++) {
     const msr_status status = correct(&s, k);
     if (status != MSR_OK) {
@@ -141,10 +132,10 @@ msr_status msri_newton(const msri_stage *stage, double *memory, void *object, do
       return status == MSR_EUNSTABLE ? give_up(&s, err) : status;
     }
     s.size_before = s.size;
-    s.size = largest(n, s.p);
-    if (!isfinite(s.size + largest(n, s.residual))) return s.size = NAN, give_up(&s, err);
+    s.size = msri_largest(n, s.p);
+    if (!isfinite(s.size + msri_largest(n, s.residual))) return s.size = NAN, give_up(&s, err);
     for (size_t i = 0; i < n; i++) d[i] = s.q[i] - stage->q0[i] - s.p[i];
-    if (converged(&s, k, largest(n, d))) return MSR_OK;
+    if (converged(&s, k, msri_largest(n, d))) return MSR_OK;
     move(&s, k, d);
   }
   return give_up(&s, err);

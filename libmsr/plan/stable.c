@@ -70,14 +70,15 @@ static double safe_share(const msr_plan *plan) {
 /* Verlet's limit. */
 static const double resolved = 2;
 
-/* Where any step is stable, two things still call for steps that follow every spring: supports,
- * which stop a mass while its neighbours go on for the rest of the step, and methods that keep
- * phase-space area, whose energy grows when long steps meet springs that turn and buckle. */
+/* Where any step of an implicit method is stable, two things still call for steps that follow every
+ * spring: supports, which stop a mass while its neighbours go on for the rest of the step, and
+ * methods that keep phase-space area, whose energy grows when long steps meet springs that turn and
+ * buckle. */
 static double safe_step(const msr_plan *plan) {
   const msr_plan_figures *f = &plan->figures;
   const bool follows = plan->contact.drift || f->integrator->symplectic;
-  const bool any = isinf(f->stable_step) && f->omega > 0 && follows;
-  return safe_share(plan) * (any ? resolved / f->omega : f->stable_step);
+  const bool any = f->integrator->implicit && isinf(f->stable_step) && f->omega > 0;
+  return safe_share(plan) * (any && follows ? resolved / f->omega : f->stable_step);
 }
 
 /* The fewest equal steps of dt that are safe. */

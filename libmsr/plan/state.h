@@ -29,11 +29,11 @@ struct msr_state {
   uint64_t frames;         /* of a run that went to the sinks */
   const msr_force *failed; /* the force whose status stopped the last step */
   msri_guard guard;
-  msr_workspace work;       /* vector [integrator->vectors, 1 at least][2n] */
-  double *q, *v;            /* x[n], y[n]; vx[n], vy[n] */
-  double *before;           /* [4n] if the library bounces: q, v before the step */
-  double *owed;             /* [2n] if the plan settles: see contacts.c; else NULL */
-  double *ahead;            /* [2n] likewise: the acceleration at the end of a step */
+  msr_workspace work; /* vector [integrator->vectors, 1 at least][2n] */
+  double *q, *v;      /* x[n], y[n]; vx[n], vy[n] */
+  double *before;     /* [4n] if the library bounces: q, v before the step */
+  double *owed;       /* [2n] if the plan settles: see contacts.c; else NULL */
+  double *ahead;      /* [2n] likewise: the acceleration at the end of a step */
   msri_known known;
   double *middle;           /* [4n] if plan->midpoint: force, velocity */
   double *between;          /* [4n] if plan->middle: the middle, force */

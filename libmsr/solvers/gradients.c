@@ -1,24 +1,23 @@
 /* gradients.c - preconditioned conjugate gradients for A x = M r (Hestenes & Stiefel 1952, J. Res.
  * Nat. Bur. Stand. 49, 409). Springs act on differences of x, so that a translation feels none of
  * them, however stiff, and sums of forces are 0 but for the last bit. */
+#include "base/vector.h"
 #include "solvers/stiffness.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 enum { MOST_ITERATIONS = 5000 };
 
-/* x = 0, residual = M r; is there any? */
-static bool start(msri_stiffness *a, const double *r) {
+/* x = 0, residual = M r / size: of order 1, so that no square of it is lost. */
+static void start(msri_stiffness *a, const double *r, double size) {
   const size_t n = a->graph->n;
-  bool any = false;
   for (size_t i = 0; i < n; i++) {
-    const double m = a->m[i * a->m_stride];
+    const double m = a->m[i * a->m_stride] / size;
     a->residual[i] = (msri_vector){m * r[i], m * r[n + i]};
-    any |= r[i] != 0 || r[n + i] != 0;
   }
   memset(a->x, 0, n * sizeof *a->x);
-  return any;
 }
 
 /* y = A p; returns p.y */
@@ -91,8 +90,11 @@ static msr_status iterate(msri_stiffness *a, double tolerance) {
 
 msr_status msri_stiffness_solve(msri_stiffness *a, const double *r, double tolerance, double *x) {
   const size_t n = a->graph->n;
-  const msr_status status = start(a, r) ? iterate(a, tolerance) : MSR_OK;
-  for (size_t i = 0; i < n; i++) x[i] = a->x[i].x;
-  for (size_t i = 0; i < n; i++) x[n + i] = a->x[i].y;
+  const double size = msri_largest(2 * n, r);
+  if (!isfinite(size)) return MSR_EUNSTABLE;
+  start(a, r, msri_max(size, DBL_MIN));
+  const msr_status status = size > DBL_MIN ? iterate(a, tolerance) : MSR_OK;
+  for (size_t i = 0; i < n; i++) x[i] = size * a->x[i].x;
+  for (size_t i = 0; i < n; i++) x[n + i] = size * a->x[i].y;
   return status;
 }

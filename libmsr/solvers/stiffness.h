@@ -19,7 +19,7 @@ typedef struct msri_stiffness {
   msri_block *pivot;  /* [n]: D^-1 of the factors L D L^T */
   msri_square *lower; /* [graph->pairs]: -L below its diagonal of ones */
   msri_vector *x, *residual, *direction, *image; /* [n]: of conjugate gradients */
-  uint64_t iterations; /* of these, so far: what solving takes */
+  uint64_t iterations;                           /* of these, so far: what solving takes */
 } msri_stiffness;
 
 /* Bytes of its memory, and the object in it. The masses and springs of the view must outlive it. */
