@@ -5,7 +5,9 @@
 
 #include <string.h>
 
-/* FNV-1a over bytes. */
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+/* FNV-1a, byte by byte; numbers go word by word. */
 static uint64_t add(uint64_t hash, const void *bytes, size_t size) {
   const unsigned char *byte = bytes;
   for (size_t i = 0; i < size; i++) hash = (hash ^ byte[i]) * UINT64_C(0x100000001b3);
@@ -14,25 +16,25 @@ static uint64_t add(uint64_t hash, const void *bytes, size_t size) {
 
 static uint64_t add_picture(uint64_t hash, const msr_picture *picture) {
   const uint64_t sides[] = {picture->width, picture->height};
-  hash = add(hash, sides, sizeof sides);
+  hash = msri_hash_words(hash, sides, COUNT(sides));
   return add(hash, picture->rgb, 3 * picture->width * picture->height);
 }
 
 static uint64_t add_mass(uint64_t hash, const msr_mass *mass) {
   const double numbers[] = {mass->x, mass->y, mass->vx, mass->vy, mass->m};
-  return add(add(hash, numbers, sizeof numbers), mass->rgb, sizeof mass->rgb);
+  return add(msri_hash_words(hash, numbers, COUNT(numbers)), mass->rgb, sizeof mass->rgb);
 }
 
 static uint64_t add_spring(uint64_t hash, const msri_scene_spring *spring) {
   const uint64_t ends[] = {spring->i, spring->j};
   const double numbers[] = {spring->k, spring->L};
-  return add(add(hash, ends, sizeof ends), numbers, sizeof numbers);
+  return msri_hash_words(msri_hash_words(hash, ends, COUNT(ends)), numbers, COUNT(numbers));
 }
 
 static uint64_t add_anchor(uint64_t hash, const msr_anchor *anchor) {
   const uint64_t i = anchor->i;
   const double numbers[] = {anchor->x, anchor->y, anchor->k, anchor->L};
-  return add(add(hash, &i, sizeof i), numbers, sizeof numbers);
+  return msri_hash_words(add(hash, &i, sizeof i), numbers, COUNT(numbers));
 }
 
 static uint64_t add_force(uint64_t hash, const msri_scene_force *force) {
@@ -46,7 +48,7 @@ static uint64_t add_options(uint64_t hash, const msr_scene *scene) {
                             c->stiffness, scene->restitution, scene->friction};
   const uint64_t counts[] = {c->iterations, c->images, (uint64_t)scene->options.neighbours,
                              scene->options.attach, scene->options.closed_border};
-  return add(add(hash, numbers, sizeof numbers), counts, sizeof counts);
+  return msri_hash_words(msri_hash_words(hash, numbers, COUNT(numbers)), counts, COUNT(counts));
 }
 
 uint64_t msri_scene_hash(const msr_scene *scene) {

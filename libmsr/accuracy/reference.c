@@ -59,7 +59,8 @@ static bool pays(const quest *q, const msri_reference *a, const msri_reference *
 }
 
 static bool good_enough(const quest *q) {
-  return q->best.n == q->setting->n && msri_reference_error(&q->best) <= q->goal->enough;
+  const size_t n = q->best.n;
+  return n > 0 && n == q->setting->n && msri_reference_error(&q->best) <= q->goal->enough;
 }
 
 static bool quickly(const quest *q) { return q->goal->enough >= quick_goal; }

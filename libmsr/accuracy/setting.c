@@ -79,7 +79,7 @@ static msr_status list_methods(msri_setting *s, const msr_accuracy_options *o, m
   const msr_integrator *const *list = all ? msr_integrators : o->integrators;
   size_t n = o->n_integrators;
   while (all && list[n]) n++;
-  s->method = msri_alloc(n, sizeof *s->method, "the methods", err);
+  s->method = msri_alloc(n, sizeof(const msr_integrator *), "the methods", err);
   if (!s->method) return MSR_ENOMEM;
   for (size_t i = 0; i < n; i++) {
     const bool never = all && !list[i]->adaptive && !(list[i]->stability > 0);
