@@ -94,6 +94,22 @@ static void work_is_true(void **unused) {
   msr_accuracy_free(made);
 }
 
+/* Though some of its runs explode. */
+static void success_leaves_no_error(void **unused) {
+  (void)unused;
+  msr_scene *scene = make_chain();
+  msr_error err = {MSR_OK, "as it was"};
+  msr_accuracy *made;
+  size_t n, unstable = 0;
+  must(msr_accuracy_study(scene, &(msr_accuracy_options){METHODS(three)}, &made, &err));
+  const msr_accuracy_point *p = msr_accuracy_points(made, &n);
+  for (size_t i = 0; i < n; i++) unstable += !p[i].stable;
+  assert_true(unstable > 0);
+  assert_string_equal(err.message, "as it was");
+  msr_accuracy_free(made);
+  msr_scene_free(scene);
+}
+
 /* Far from rounding and from the largest steps, errors fall as declared. */
 static void orders_are_as_declared(void **unused) {
   (void)unused;
@@ -464,6 +480,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(errors_are_true),
       cmocka_unit_test(work_is_true),
+      cmocka_unit_test(success_leaves_no_error),
       cmocka_unit_test(orders_are_as_declared),
       cmocka_unit_test(points_are_in_order),
       cmocka_unit_test(front_and_answers_are_true),

@@ -272,16 +272,18 @@ msr_status msr_accuracy_choose(const msr_scene *scene, double error,
   if (!(error > 0 && isfinite(error)))
     return msri_fail(err, MSR_EUSAGE, "the error must be a number above 0, not %g", error);
   choosing c = {.error = error};
+  msr_error said = {MSR_OK, ""}; /* of pilots that failed, too */
   finding found = {.n = 0};
   msr_status status = msri_setting_open(&c.setting, scene, options, &usual, err);
   if (status != MSR_OK) return status;
   c.all = c.setting.n;
-  status = choose(&c, &found, err);
+  status = choose(&c, &found, &said);
   if (c.setting.watch.status != MSR_OK)
-    status = msri_fail(err, c.setting.watch.status, "stopped before the choice was made");
-  if (status == MSR_OK) status = conclude(&c, &found, choice, err);
+    status = msri_fail(&said, c.setting.watch.status, "stopped before the choice was made");
+  if (status == MSR_OK) status = conclude(&c, &found, choice, &said);
   msri_reference_clear(&c.reference);
   msri_setting_close(&c.setting);
   free(c.aim);
-  return status;
+  if (status == MSR_OK) return MSR_OK;
+  return msri_hand_on(err, status, &said, "%s", msr_status_text(status));
 }

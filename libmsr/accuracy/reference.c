@@ -49,13 +49,14 @@ static bool better(const msri_reference *a, const msri_reference *b) {
   return b->gap[n - 1] < a->gap[n - 1] || b->n > n;
 }
 
-/* Is it so much better that still finer ones are worth trying? */
+/* Is it so much better that still finer ones are worth trying? Without supports any gain is. */
 static bool pays(const quest *q, const msri_reference *a, const msri_reference *b) {
   if (a->n == 0) return true;
   if (!better(a, b)) return false;
   const bool exacter = b->gap[a->n - 1] < a->gap[a->n - 1] / 2;
   if (b->n == q->setting->n) return exacter || b->n > a->n;
-  return (double)b->n > (1 + q->goal->longer) * (double)a->n;
+  const double longer = q->setting->contacts ? q->goal->longer : 0;
+  return (double)b->n > (1 + longer) * (double)a->n;
 }
 
 static bool good_enough(const quest *q) {

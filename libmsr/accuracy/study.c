@@ -14,6 +14,7 @@ static const msri_setting_defaults usual = {60, 32, 0};
 static const double reference_share = 0.25; /* of the budget */
 static const double default_finest = 1e-10; /* [px] */
 static const double parted = 1e-3; /* where references differ by so much, they have parted [px] */
+static const double timing = 0.2;  /* most time for all timed runs of a point [s] */
 static const double hopeless = 30; /* times the cost of a method that is as good */
 
 typedef struct study {
@@ -89,8 +90,8 @@ static msr_status measure(study *s, const msr_plan_options *options, msri_measur
       msri_measure(&s->setting, &s->reference, &s->screens, options, &limits, m, err);
   m->point.seconds = (double)NAN;
   if (status != MSR_OK || !m->point.stable || msri_result_has(s->made, &m->point)) return status;
-  return msri_measure_time(&s->setting, &s->reference, options, s->setting.watch.budget / 600,
-                           &m->point.seconds, err);
+  return msri_measure_time(&s->setting, &s->reference, options,
+                           msri_min(timing, s->setting.watch.budget / 600), &m->point.seconds, err);
 }
 
 static msr_status keep(study *s, const msri_measured *m, msr_error *err) {
@@ -179,14 +180,16 @@ msr_status msr_accuracy_study(const msr_scene *scene, const msr_accuracy_options
   static const msr_accuracy_options defaults = {0};
   if (!options) options = &defaults;
   study s = {.finest = options->finest > 0 ? options->finest : default_finest};
+  msr_error said = {MSR_OK, ""}; /* of runs that failed, too, which a study may do without */
   msr_status status = msri_setting_open(&s.setting, scene, options, &usual, err);
   if (status != MSR_OK) return status;
-  s.made = msri_alloc(1, sizeof *s.made, "a study", err);
-  status = s.made ? run(&s, err) : MSR_ENOMEM;
+  s.made = msri_alloc(1, sizeof *s.made, "a study", &said);
+  status = s.made ? run(&s, &said) : MSR_ENOMEM;
   close(&s);
-  if (status == MSR_OK)
+  if (status == MSR_OK) {
     *accuracy = s.made;
-  else
-    msr_accuracy_free(s.made);
-  return status;
+    return MSR_OK;
+  }
+  msr_accuracy_free(s.made);
+  return msri_hand_on(err, status, &said, "%s", msr_status_text(status));
 }
