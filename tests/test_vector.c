@@ -45,14 +45,14 @@ static void the_largest_is_found_wherever_it_is(void **state) {
   (void)state;
   uint64_t dice = 3;
   const double odd[] = {NO_NUMBER, INFINITE, -INFINITE};
-  double x[MOST];
+  double x[MOST] = {1};
   assert_true(msri_largest(0, x) == 0);
   for (size_t i = 0; i < MOST; i++) {
     fill(x, &dice);
     x[i] = i % 2 ? 11 : -11;
     assert_true(msri_largest(MOST, x) == 11);
     x[i] = odd[i % 3];
-    assert_false(isfinite(msri_largest(MOST, x)));
+    assert_true(!isfinite(msri_largest(MOST, x)));
   }
 }
 

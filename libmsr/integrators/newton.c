@@ -40,21 +40,37 @@ msr_status msri_newton_open(const msr_integrator *self, const msr_system *system
   return *object ? MSR_OK : MSR_ENOMEM;
 }
 
-/* At q = q0 + d: the residual, and the correction p. */
-static msr_status correct(newton *s, int k) {
+/* p of A p = residual, and its size, which is no number if that can't be solved. */
+static msr_status solve(newton *s, int k) {
   const msri_stage *e = s->stage;
   const msr_system *system = e->system;
-  const double *q0 = e->q0, *known = e->known;
-  double *r = s->residual;
-  msr_status status = msri_stage_acceleration(e, s->q, r);
-  if (status != MSR_OK) return status;
-  for (size_t i = 0; i < system->n; i++) r[i] = s->q[i] - q0[i] - known[i] - e->weight * r[i];
   const double rate = k < 2 ? 1 : s->size / s->size_before;
   const double tolerance = msri_max(1e-10, msri_min(inexact, 0.1 * rate));
-  if (s->object) return msri_krylov_solve(e, s->q, r, tolerance, s->object, s->p);
-  status = system->linearise(system->self, e->t, e->between ? q0 : NULL, k > 0 ? s->before : q0,
-                             s->q, e->between ? e->weight / 2 : e->weight);
-  return status == MSR_OK ? system->solve(system->self, r, tolerance, s->p) : status;
+  msr_status status;
+  if (s->object) {
+    status = msri_krylov_solve(e, s->q, s->residual, tolerance, s->object, s->p);
+  } else {
+    status =
+        system->linearise(system->self, e->t, e->between ? e->q0 : NULL, k > 0 ? s->before : e->q0,
+                          s->q, e->between ? e->weight / 2 : e->weight);
+    if (status == MSR_OK) status = system->solve(system->self, s->residual, tolerance, s->p);
+  }
+  s->size_before = s->size;
+  s->size = status == MSR_EUNSTABLE ? (double)NAN : msri_largest(system->n, s->p);
+  return status;
+}
+
+/* The residual at q = q0 + d, and the correction. */
+static msr_status correct(newton *s, int k) {
+  const msri_stage *e = s->stage;
+  const double *q0 = e->q0, *known = e->known;
+  double *r = s->residual;
+  const msr_status status = msri_stage_acceleration(e, s->q, r);
+  if (status != MSR_OK) return status;
+  for (size_t i = 0; i < e->system->n; i++) r[i] = s->q[i] - q0[i] - known[i] - e->weight * r[i];
+  if (isfinite(msri_largest(e->system->n, r))) return solve(s, k);
+  s->size = (double)NAN;
+  return MSR_OK;
 }
 
 /* Would the next correction be below the rounding of d, as the last two go on? If that can't be
@@ -102,14 +118,14 @@ static void move(newton *s, int k, double *d) {
 }
 
 static msr_status give_up(const newton *s, msr_error *err) {
-  if (!isfinite(s->size))
+  if (isfinite(s->size))
     return msri_fail(err, MSR_EUNSTABLE,
-                     "the equations of a step are beyond what numbers can hold: take smaller steps "
-                     "(more substeps), or look for a force or a value that is too large");
+                     "the equations of a step weren't solved in %d iterations (the last one moved "
+                     "something by %.3g): take smaller steps (more substeps)",
+                     MOST_ITERATIONS, s->size);
   return msri_fail(err, MSR_EUNSTABLE,
-                   "the equations of a step weren't solved in %d iterations (the last one moved "
-                   "something by %.3g): take smaller steps (more substeps)",
-                   MOST_ITERATIONS, s->size);
+                   "the equations of a step are beyond what numbers can hold: take smaller steps "
+                   "(more substeps), or look for a force or a value that is too large");
 }
 
 msr_status msri_newton(const msri_stage *stage, double *memory, void *object, double *d,
@@ -122,18 +138,13 @@ msr_status msri_newton(const msri_stage *stage, double *memory, void *object, do
               .p = memory + 2 * n,
               .p_before = memory + 3 * n,
               .residual = memory + 4 * n,
-              .least = INFINITY};
+              .least = (double)INFINITY};
   for (size_t i = 0; i < n; i++) s.q[i] = stage->q0[i] + d[i];
   s.rounding = 2 * DBL_EPSILON * msri_largest(n, s.q);
   for (int k = 0; k < MOST_ITERATIONS; k++) {
     const msr_status status = correct(&s, k);
-    if (status != MSR_OK) {
-      s.size = NAN;
-      return status == MSR_EUNSTABLE ? give_up(&s, err) : status;
-    }
-    s.size_before = s.size;
-    s.size = msri_largest(n, s.p);
-    if (!isfinite(s.size + msri_largest(n, s.residual))) return s.size = NAN, give_up(&s, err);
+    if (!isfinite(s.size)) break;
+    if (status != MSR_OK) return status;
     for (size_t i = 0; i < n; i++) d[i] = s.q[i] - stage->q0[i] - s.p[i];
     if (converged(&s, k, msri_largest(n, d))) return MSR_OK;
     move(&s, k, d);

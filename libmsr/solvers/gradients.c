@@ -68,16 +68,15 @@ static void turn(size_t n, double w, const msri_vector *restrict z, msri_vector 
 }
 
 /* Rounding ends it before the tolerance is met where c k / m is huge: what is rough will still do.
- * What is so small that its square is 0 is solved. */
+ */
 static msr_status iterate(msri_stiffness *a, double tolerance) {
   static const double rough = 0.1;
   const size_t n = a->graph->n;
-  double rz = msri_stiffness_precondition(a, a->residual, a->image), error = INFINITY;
+  double rz = msri_stiffness_precondition(a, a->residual, a->image), error = (double)INFINITY;
   memcpy(a->direction, a->image, n * sizeof *a->direction);
   for (int k = 0; k < MOST_ITERATIONS; k++) {
     const double curvature = multiply(a, a->direction, a->image);
     a->iterations++;
-    if (rz == 0 || curvature == 0) return MSR_OK;
     if (!(rz > 0 && curvature > 0)) break;
     error = advance(a, rz / curvature);
     if (error <= tolerance * tolerance) return MSR_OK;

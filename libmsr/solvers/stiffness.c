@@ -40,7 +40,7 @@ static double spare(const msr_view *s, double *degree) {
     for (size_t n = 0; n < run->count; n++) degree[run->first + run->offset + n]++;
   }
   for (size_t n = 0; n < springs->n_anchors; n++) degree[springs->anchor[n].i]++;
-  double least = INFINITY;
+  double least = (double)INFINITY;
   for (size_t i = 0; i < s->n; i++)
     least = msri_min(least, 0.45 * msr_view_mass(s, i) / msri_max(1, degree[i]));
   return least;
@@ -98,7 +98,7 @@ typedef struct geometry {
  * after a quotient, or gcc would not vectorise. */
 MSRI_INLINE void measure(const strands *s, size_t stride, bool mean, geometry *restrict g) {
   const ends start = s->start, from = s->from, now = s->now;
-  const double *k = s->k, *L = s->L, c = s->c, none = INFINITY;
+  const double *k = s->k, *L = s->L, c = s->c, none = (double)INFINITY;
   for (size_t n = 0; n < s->count; n++) {
     double dx = now.xj[n] - now.xi[n], dy = now.yj[n] - now.yi[n], rest = L[n * stride];
     const double fx = from.xj[n] - from.xi[n], fy = from.yj[n] - from.yi[n], lf = length(fx, fy);
@@ -118,7 +118,7 @@ MSRI_INLINE void measure(const strands *s, size_t stride, bool mean, geometry *r
 /* c K of each spring. One without a length has no direction: it resists along any. */
 MSRI_INLINE void stiffen(const strands *s, size_t stride, bool mean, blocks *restrict b) {
   geometry g;
-  const double *k = s->k, c = s->c, least = s->least, none = INFINITY;
+  const double *k = s->k, c = s->c, least = s->least, none = (double)INFINITY;
   measure(s, stride, mean, &g);
   for (size_t n = 0; n < s->count; n++) {
     const double ck = c * k[n * stride], floor = g.l[n] < none ? least : ck;
