@@ -79,7 +79,8 @@ static void search(table *t, size_t k) {
       s.i++;
       try_knob(&s, knob_at(&s));
     }
-    if (!(found.error <= t->error[e])) found = refine(&s, t->error[e]);
+    found.repeated = found.error <= t->error[e];
+    if (!found.repeated) found = refine(&s, t->error[e]);
     t->point[k][e] = found;
   }
 }
@@ -91,13 +92,13 @@ void table_search(table *t) {
 /* ---- Times */
 
 /* Once, or for a millisecond. */
-static void time_point(const table *t, const method *m, point *x, double *z) {
+static void time_point(table *t, const method *m, point *x) {
   const double patience = 1e-3, begin = clock_now(m->elsewhere);
   double now = begin;
   do {
     const double then = now;
     t->p->deadline = (double)INFINITY;
-    m->run(x->object, z);
+    m->run(x->object, t->z);
     now = clock_now(m->elsewhere);
     if (x->repeats < MOST_REPEATS) x->time[x->repeats++] = (float)(now - then);
   } while (now - begin < patience);
@@ -109,41 +110,49 @@ static int by_size(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-static void sum_up(point *x) {
+/* Calls `visit` for all points that are to be timed, over and over. */
+static void for_points(table *t, int rounds, void (*visit)(table *t, const method *m, point *x)) {
+  for (int i = 0; i < rounds; i++)
+    for (size_t k = 0; k < t->n_methods; k++)
+      for (size_t e = 0; e < t->n_errors; e++) {
+        point *x = &t->point[k][e];
+        if (x->reached && !x->repeated) visit(t, &t->method[k], x);
+      }
+}
+
+static void open_point(table *t, const method *m, point *x) {
+  x->object = m->open(m, t->p, x->knob);
+  x->time = need(MOST_REPEATS, sizeof *x->time);
+}
+
+/* Those that have had their share of time sit out. */
+static void take_turn(table *t, const method *m, point *x) {
+  if (x->repeats < 2 || x->spent < t->share) time_point(t, m, x);
+}
+
+static void close_point(table *t, const method *m, point *x) {
+  (void)t;
   qsort(x->time, x->repeats, sizeof *x->time, by_size);
   x->minimum = (double)x->time[0];
   x->median = (double)x->time[x->repeats / 2];
+  free(x->time);
+  m->close(x->object);
 }
 
-/* A round gives every point a turn, but those that have had their share. */
-static void go_round(table *t, double share, double *z) {
-  for (size_t k = 0; k < t->n_methods; k++)
-    for (size_t e = 0; e < t->n_errors; e++) {
-      point *x = &t->point[k][e];
-      if (x->reached && (x->repeats < 2 || x->spent < share)) time_point(t, &t->method[k], x, z);
-    }
+/* A point that is as the one before has its times; what comes within a smaller error comes within
+ * this one, too. */
+static void settle(size_t n, point *x) {
+  for (size_t e = 1; e < n; e++)
+    if (x[e].repeated) x[e] = x[e - 1];
+  for (size_t e = n - 1; e > 0; e--)
+    if (x[e].reached && x[e].minimum < x[e - 1].minimum) x[e - 1] = x[e];
 }
 
-void table_time(table *t, double share, int rounds) {
-  double *z = need(2 * t->p->n, sizeof *z);
-  for (size_t k = 0; k < t->n_methods; k++)
-    for (size_t e = 0; e < t->n_errors; e++) {
-      point *x = &t->point[k][e];
-      if (!x->reached) continue;
-      x->object = t->method[k].open(&t->method[k], t->p, x->knob);
-      x->time = need(MOST_REPEATS, sizeof *x->time);
-    }
-  for (int i = 0; i < rounds; i++) go_round(t, share, z);
-  for (size_t k = 0; k < t->n_methods; k++)
-    for (size_t e = 0; e < t->n_errors; e++)
-      if (t->point[k][e].reached) sum_up(&t->point[k][e]);
-  free(z);
-}
-
-void table_free(table *t) {
-  for (size_t k = 0; k < t->n_methods; k++)
-    for (size_t e = 0; e < t->n_errors; e++) {
-      if (t->point[k][e].reached) t->method[k].close(t->point[k][e].object);
-      free(t->point[k][e].time);
-    }
+void table_time(table *t, int rounds) {
+  t->z = need(2 * t->p->n, sizeof *t->z);
+  for_points(t, 1, open_point);
+  for_points(t, rounds, take_turn);
+  for_points(t, 1, close_point);
+  free(t->z);
+  for (size_t k = 0; k < t->n_methods; k++) settle(t->n_errors, t->point[k]);
 }

@@ -9,7 +9,7 @@ enum { MOST_ERRORS = 5, MOST_METHODS = 64, MOST_REPEATS = 4096 };
 
 /* What a method takes to come within an error of the truth. */
 typedef struct point {
-  bool reached;
+  bool reached, repeated; /* as the point before */
   double knob, error;
   double minimum, median; /* [s] */
   double spent;           /* on all repeats [s] */
@@ -24,14 +24,15 @@ typedef struct table {
   const double *error; /* [n_errors], falling [px] */
   const double *truth; /* [2n]: q, v at T */
   double loosest;      /* tolerance [px] */
+  double share;        /* of time, after which a point has been timed enough [s] */
   method method[MOST_METHODS];
   point point[MOST_METHODS][MOST_ERRORS];
+  double *z; /* [2n]: where timed runs end */
 } table;
 
 /* Knobs, by runs that aren't timed; then times, by `rounds` over all
- * points, where one takes part until it has had its share [s]. */
+ * points. */
 void table_search(table *t);
-void table_time(table *t, double share, int rounds);
-void table_free(table *t);
+void table_time(table *t, int rounds);
 
 #endif
