@@ -2,7 +2,7 @@
 #     gnuplot -c figure.gp free.csv free.pdf
 # Both axes logarithmic, a line per method; lower and further left is better.
 csv = ARG1
-set terminal pdfcairo size 16.3cm, 9cm enhanced font 'DejaVu Sans,8'
+set terminal pdfcairo size 16.3cm, 9cm enhanced font 'DejaVu Sans,8' fontscale 0.7
 set output ARG2
 set datafile separator ','
 
@@ -30,9 +30,11 @@ set grid linecolor '#dddddd' linetype 1 linewidth 0.5
 set key outside right center vertical Left reverse noenhanced samplen 2.5 spacing 1.1
 set xlabel 'largest error of a position [px]'
 set ylabel 'time [ms]'
+set autoscale yfix
+set offsets 0, 0, graph 0.06, graph 0.06
 set xrange [own / 4 : right * 6]
 set arrow from own, graph 0 to own, graph 1 nohead dashtype 2 linecolor '#606060'
-set label "the reference's own error" at own, graph 0.98 right rotate by 90 offset -0.8, 0 \
+set label "the reference's own error" at own, graph 0.98 right rotate by 90 offset -0.9, 0 \
   textcolor '#606060' font ',7'
 
 shown(m, error) = strcol(1) eq m && column(4) == 1 ? error : NaN
@@ -40,10 +42,11 @@ front = "< awk -F, '!/^#|^method,/ && $13 == 1 { print $9 \",\" 1e3 * $7 }' ".cs
 # At the right edge, at the time that its next stable run foretells.
 unstable = "< awk -F, 'BEGIN { print \"-,NaN\" } !/^#|^method,/ " \
   ."{ if ($4 == 0) { m = $1; s = $2 } else if ($1 == m) { print m \",\" 1e3 * $7 * s / $2; m = \"\" } }' ".csv
+explosions = int(system("awk -F, '!/^#|^method,/ && $4 == 0 { n++ } END { print n + 0 }' ".csv))
 plot front using 1:2 with lines linewidth 8 linecolor '#d0d0d0' title 'Pareto front', \
   for [i = 1 : words(methods)] csv using (shown(word(methods, i), $9)):(1e3 * $7) \
-    with linespoints linewidth 1.3 pointsize 0.5 linecolor rgb tint(word(methods, i)) \
+    with linespoints linewidth 1.3 pointsize 0.6 linecolor rgb tint(word(methods, i)) \
     pointtype mark(word(methods, i)) dashtype dashes(word(methods, i)) title word(methods, i), \
   unstable using (right * 3):2:(tint(strcol(1))) with points pointtype 2 pointsize 0.7 \
     linecolor rgb variable notitle, \
-  NaN with points pointtype 2 pointsize 0.7 linecolor '#000000' title 'unstable'
+  NaN with points pointtype 2 pointsize 0.7 linecolor '#000000' title explosions ? 'unstable' : ''
