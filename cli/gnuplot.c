@@ -21,7 +21,7 @@ static msr_status cannot_start(int number, msr_error *err) {
   return fail(
       err, MSR_EIO,
       "--plot needs gnuplot, which isn't there; install it (Debian, Ubuntu: apt-get install "
-      "gnuplot-nox), or ask for --csv only");
+      "gnuplot-nox); the table and --csv don't need it");
 }
 
 /* Standard input from the pipe, standard output to out; 0 or an error's number. */
