@@ -12,15 +12,25 @@
 #include <string.h>
 
 typedef struct files {
-  whole_file csv, figure; /* all zero: not asked for */
+  whole_file csv, figure; /* all zero: not asked for, or no figure can be drawn */
+  msr_error no_figure;    /* why it can't */
 } files;
+
+/* The study, the table and the CSV are worth having without the figure. */
+static msr_status check_figure(const settings *s, files *out, msr_error *err) {
+  const msr_status status = s->plot ? figure_check(s, &out->no_figure) : MSR_OK;
+  if (status == MSR_EIO) tell(s, "warning", out->no_figure.message);
+  if (status == MSR_OK || status == MSR_EIO) return MSR_OK;
+  *err = out->no_figure;
+  return status;
+}
 
 /* Before the study, so that what can't be written is told at once. */
 static msr_status open_files(const settings *s, files *out, msr_error *err) {
-  msr_status status = MSR_OK;
-  if (s->plot) status = figure_check(s, err);
+  msr_status status = check_figure(s, out, err);
+  const bool drawn = s->plot && out->no_figure.status == MSR_OK;
   if (status == MSR_OK && s->csv) status = whole_file_open(s->csv, &out->csv, err);
-  if (status == MSR_OK && s->plot) status = whole_file_open(s->plot, &out->figure, err);
+  if (status == MSR_OK && drawn) status = whole_file_open(s->plot, &out->figure, err);
   return status;
 }
 
@@ -44,7 +54,8 @@ static msr_status write_csv(const study *st, files *out, msr_error *err) {
 }
 
 static msr_status write_figure(const study *st, files *out, msr_error *err) {
-  if (!out->figure.stream) return MSR_OK;
+  if (out->no_figure.status != MSR_OK) *err = out->no_figure;
+  if (!out->figure.stream) return out->no_figure.status;
   const msr_status status = figure_draw(st, fileno(out->figure.stream), err);
   return status == MSR_OK ? whole_file_commit(&out->figure, err) : status;
 }

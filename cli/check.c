@@ -39,9 +39,13 @@ static msr_status check_wind(const settings *s, msr_error *err) {
   return fail(err, MSR_EUSAGE, "--drag 0 stops --wind, which acts through the drag of the air");
 }
 
+/* The library would take two zeros as its default. */
 static msr_status check_tolerance(const settings *s, msr_error *err) {
   const char *const name = option_given(s, "--atol") ? "--atol" : "--rtol";
   const bool adaptive = s->integrator && s->integrator->adaptive;
+  if (adaptive && !(s->atol + s->rtol > 0)) {
+    return fail(err, MSR_EUSAGE, "--atol 0 needs an --rtol above 0: no step is without error");
+  }
   if (adaptive || !option_given(s, name)) return MSR_OK;
   return fail(err, MSR_EUSAGE,
               "%s has no effect on %s, whose steps are fixed; 'msr list' shows which integrators "

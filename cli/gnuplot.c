@@ -3,6 +3,7 @@
 #include "gnuplot.h"
 
 #include "report.h"
+#include "signals.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -20,7 +21,7 @@ static msr_status cannot_start(int number, msr_error *err) {
   return fail(
       err, MSR_EIO,
       "--plot needs gnuplot, which isn't there; install it (Debian, Ubuntu: apt-get install "
-      "gnuplot-nox), or ask for --csv only");
+      "gnuplot-nox); the table and --csv don't need it");
 }
 
 /* Standard input from the pipe, standard output to out; 0 or an error's number. */
@@ -68,5 +69,7 @@ msr_status gnuplot_end(gnuplot *g, msr_error *err) {
   do ended = waitpid(g->process, &status, 0);
   while (ended < 0 && errno == EINTR);
   if (ended == g->process && WIFEXITED(status) && WEXITSTATUS(status) == 0) return MSR_OK;
+  // Ctrl-C on a terminal reaches gnuplot too.
+  if (signals_caught()) return fail(err, MSR_EINTR, "interrupted while gnuplot was at work");
   return fail(err, MSR_EIO, "--plot: gnuplot failed; the table and --csv don't need it");
 }

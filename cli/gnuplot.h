@@ -16,7 +16,8 @@ typedef struct gnuplot {
 /* What it draws goes to the descriptor `out`. MSR_EIO, with advice if it isn't there. */
 msr_status gnuplot_start(gnuplot *g, int out, msr_error *err);
 
-/* Ends the script and waits. MSR_EIO if gnuplot failed; it has told why on standard error. */
+/* Ends the script and waits. MSR_EIO if gnuplot failed; it has told why on standard error.
+ * MSR_EINTR after a signal, if it didn't end well. */
 msr_status gnuplot_end(gnuplot *g, msr_error *err);
 
 #endif

@@ -70,16 +70,23 @@ static msr_plan_options options_of(const settings *s) {
                             .impacts = (msr_impacts)s->impacts};
 }
 
+static void tell_notes(const settings *s, const msr_plan *plan) {
+  const char *text;
+  for (size_t i = 0; (text = msr_plan_warning(plan, i)); i++) tell(s, "note", text);
+  if (s->impacts == MSR_IMPACTS_LOCATED && !simulation_contacts(plan)) {
+    tell(s, "note", "--impacts has no effect: there is no support, and the border is open");
+  }
+}
+
 static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **plan,
                           msr_error *err) {
-  const char *text;
   const bool chooses = s->accuracy > 0;
   msr_accuracy_choice choice = {.options = options_of(s)};
   msr_status status = chooses ? study_choose(s, scene, &choice, err) : MSR_OK;
   if (status == MSR_OK) status = msr_plan_create(scene, &choice.options, plan, err);
   if (status != MSR_OK) return status;
   if (chooses) study_tell_choice(s, &choice);
-  for (size_t i = 0; (text = msr_plan_warning(*plan, i)); i++) tell(s, "note", text);
+  tell_notes(s, *plan);
   return MSR_OK;
 }
 
