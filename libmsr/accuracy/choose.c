@@ -118,10 +118,11 @@ static size_t instants_within(const choosing *c, double share) {
   return n;
 }
 
-/* When time is up before a run was as accurate as asked: the one that was for longest. */
+/* When time is up before a run was as accurate as asked: the one that was for longest, unless more
+ * is known already. */
 static msr_status settle(const choosing *c, finding *found) {
   const msri_measured *m = &c->longest;
-  if (m->good == 0) return MSR_OK;
+  if (m->good <= found->n) return MSR_OK;
   *found = (finding){*m, m->good, msri_reference_error(&c->reference), .late = true};
   found->best.point.max = m->good_error;
   found->best.point.seconds *= share_at(c, m->good) / share_at(c, c->reference.n);

@@ -29,14 +29,12 @@ static msr_status options_of(const msri_setting *setting, const msri_entrant *e,
   return MSR_OK;
 }
 
-/* Largest distance of a mass between the two; NAN if there is none. */
+/* Largest distance of a mass between the two; no number if one isn't. */
 static double distance(const msr_state *a, const msr_state *b) {
   const size_t n = a->plan->figures.masses;
   double most = 0;
-  for (size_t i = 0; i < n; i++) {
-    const double d = hypot(a->q[i] - b->q[i], a->q[n + i] - b->q[n + i]);
-    if (!(d <= most)) most = d;
-  }
+  for (size_t i = 0; i < n; i++)
+    most = msri_worse(hypot(a->q[i] - b->q[i], a->q[n + i] - b->q[n + i]), most);
   return most;
 }
 

@@ -57,9 +57,9 @@ static void compare_positions(course *c, const double *q) {
   for (size_t i = 0; i < n; i++) {
     const double dx = run->q[i] - q[i], dy = run->q[n + i] - q[n + i], d2 = dx * dx + dy * dy;
     c->squares += d2;
-    if (!(d2 <= most)) most = d2;
+    most = msri_worse(d2, most);
   }
-  if (!(sqrt(most) <= c->max)) c->max = sqrt(most);
+  c->max = msri_worse(sqrt(most), c->max);
 }
 
 static void compare_energy(course *c, double truth) {

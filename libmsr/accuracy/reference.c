@@ -116,7 +116,8 @@ static msr_status try_explicit(quest *q, const msri_rivals *pair, size_t n, msr_
     if (good_enough(q) || q->setting->watch.over) return MSR_OK;
     status = try(q, &pair[i], 0, err);
   }
-  const bool fine = q->pair > pair && q->pair < pair + n;
+  bool fine = false;
+  for (size_t i = 1; i < n; i++) fine |= q->pair == &pair[i];
   return status == MSR_OK ? refine(q, fine ? q->pair : pair + 1, 1, HUGE_VAL, err) : status;
 }
 

@@ -126,7 +126,7 @@ static msr_status fill(msri_setting *s, const msr_accuracy_options *options,
   if (conf->iterations == 0)
     return msri_fail(err, MSR_EINPUT, "NB_ITERATIONS is 0: there is no time to compare over");
   const double whole = (double)conf->iterations * conf->dt;
-  const double asked = ceil(options->until / conf->dt * (1 - 1e-12));
+  const double asked = msri_max(1, ceil(options->until / conf->dt * (1 - 1e-12)));
   const bool all = options->until <= 0 || asked >= (double)conf->iterations;
   const msr_plan_options one = {.substeps = 1, .impacts = MSR_IMPACTS_LOCATED};
   s->until = all ? whole : options->until;

@@ -31,4 +31,7 @@ void *msri_grow(void *block, size_t *capacity, size_t count, size_t size, const 
 static inline double msri_min(double a, double b) { return a < b ? a : b; }
 static inline double msri_max(double a, double b) { return a > b ? a : b; }
 
+/* The larger, but what is no number before any. */
+static inline double msri_worse(double a, double b) { return a >= b || a != a ? a : b; }
+
 #endif

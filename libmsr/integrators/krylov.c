@@ -56,7 +56,7 @@ static msr_status iterate(const krylov *k, double tolerance, double *x, double *
   if (status != MSR_OK) return status;
   const double alpha = *rho / dot(n, k->shadow, k->image);
   *done = !isfinite(alpha);
-  if (*done) return MSR_OK;
+  if (*done) return dot(n, x, x) > 0 ? MSR_OK : MSR_EUNSTABLE;
   msri_add_scaled(n, alpha, k->direction, x);
   msri_add_scaled(n, -alpha, k->image, k->residual);
   *done = small(k, tolerance, x);

@@ -17,12 +17,9 @@ msr_status msri_tolerance_check(msri_tolerance *tolerance, msr_error *err) {
   return MSR_OK;
 }
 
-/* The larger of the two, but what is no number before any. */
-static double worse(double a, double b) { return a >= b || isnan(a) ? a : b; }
-
 static double largest(size_t n, const double *a) {
   double most = 0;
-  for (size_t i = 0; i < n; i++) most = worse(most, fabs(a[i]));
+  for (size_t i = 0; i < n; i++) most = msri_worse(most, fabs(a[i]));
   return most;
 }
 
@@ -40,7 +37,7 @@ void msri_tolerance_fit(msri_tolerance *tolerance, size_t n, const double *y, do
 }
 
 double msri_tolerance_share(const msri_tolerance *tolerance, size_t n, const double *e) {
-  return worse(largest(n, e) / tolerance->q, largest(n, e + n) / tolerance->v);
+  return msri_worse(largest(n, e) / tolerance->q, largest(n, e + n) / tolerance->v);
 }
 
 double msri_step_growth(double share, double p) {
