@@ -497,6 +497,22 @@ static void want_of_memory_is_told(void **state) {
   assert_int_equal(wrong, 0);
 }
 
+/* a = -q, and beyond 1 none: no guess out there may pass for a solution. */
+static msr_status fenced(void *self, double t, const double *q, const double *v, double *a) {
+  (void)self, (void)t, (void)v;
+  a[0] = q[0] <= 1 ? -q[0] : (double)NAN;
+  return MSR_OK;
+}
+
+static void what_is_no_number_is_no_solution(void **unused) {
+  (void)unused;
+  const msr_system system = {.n = 1, .acceleration = fenced};
+  double q = 0, v = 1; /* the solution is q = v = 1/2, the guess q = 1 */
+  const msr_status status =
+      msr_integrate(&msr_integrator_backward_euler, &system, 0, 1, 1, &q, &v, NULL);
+  assert_true(status == MSR_EUNSTABLE || (fabs(q - 0.5) < 1e-9 && fabs(v - 0.5) < 1e-9));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_stiff_mode_dies_or_lives),
@@ -513,6 +529,7 @@ int main(void) {
       cmocka_unit_test(wild_scenes_leave_numbers),
       cmocka_unit_test(a_chain_comes_to_hang),
       cmocka_unit_test(a_large_stiff_scene_runs),
+      cmocka_unit_test(what_is_no_number_is_no_solution),
       cmocka_unit_test(want_of_memory_is_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
