@@ -101,9 +101,9 @@ static msr_status explain(msr_plan *plan, bool automatic, msr_error *err) {
   if (automatic && f->substeps > 1 && isinf(f->stable_step))
     return msri_notes_add(
         &plan->notes, err,
-        "%llu substeps of %.4g s per iteration: steps up to %.4g s are safe here, "
-        "though %s is stable for any where springs neither buckle nor hit supports",
-        (unsigned long long)f->substeps, f->h, f->safe_step, f->integrator->name);
+        "%llu substeps of %.4g s per iteration: safe where supports are hit or springs buckle; "
+        "%s is stable for any step elsewhere: ask for fewer substeps, even 1, and look at energies",
+        (unsigned long long)f->substeps, f->h, f->integrator->name);
   if (automatic && f->substeps > 1)
     return msri_notes_add(&plan->notes, err,
                           "%llu substeps of %.4g s per iteration: steps up to %.4g s are safe here "
