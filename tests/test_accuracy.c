@@ -165,6 +165,11 @@ static void front_and_answers_are_true(void **unused) {
       if (p[i].stable && p[i].max + own <= error)
         assert_true(best && best->max + own <= error && best->seconds <= p[i].seconds);
   }
+  for (size_t i = 0; i < n; i++) {
+    const double error = p[i].max + own / 2;
+    const msr_accuracy_point *best = msr_accuracy_cheapest(made, error);
+    if (best) assert_true(best->max + own <= error);
+  }
   assert_null(msr_accuracy_cheapest(made, own / 2));
   msr_accuracy_free(made);
 }
@@ -441,7 +446,11 @@ static void own_methods_are_studied(void **unused) {
   assert_true(n > 5);
   assert_ptr_equal(p[0].integrator, &mine);
   assert_ptr_equal(p[n - 1].integrator, &msr_integrator_euler);
-  for (size_t i = 0; i < n; i++) assert_ptr_not_equal(p[i].integrator, &picky);
+  for (size_t i = 0; i < n; i++) {
+    assert_ptr_not_equal(p[i].integrator, &picky);
+    if (i > 0 && p[i].integrator == p[i - 1].integrator)
+      assert_true(p[i].substeps > p[i - 1].substeps);
+  }
   msr_accuracy_free(made);
 }
 

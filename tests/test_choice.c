@@ -294,6 +294,13 @@ static void choices_have_horizons(void **unused) {
   const msr_plan_options fine = {.integrator = &msr_integrator_rk8pd, .atol = 1e-13};
   const track a = run(scene, &choice.options), b = run(scene, &fine);
   assert_true(apart(&a, &b, (uint64_t)(choice.horizon / 0.02 + 0.5)) <= 0.01);
+  /* What follows, untried, should at least be stable. */
+  const msr_accuracy_choice coarse = choose(scene, 10);
+  msr_plan *plan;
+  must(msr_plan_create(scene, &coarse.options, &plan, &why));
+  const msr_plan_figures f = msr_plan_describe(plan);
+  assert_true(coarse.horizon < 40 && f.h <= f.safe_step && f.integrator->order > 1);
+  msr_plan_free(plan);
   free(a.q);
   free(b.q);
   msr_scene_free(scene);

@@ -90,7 +90,7 @@ static msr_status try(choosing *c, msri_aim *aim, msr_error *err) {
   aim->done = status == MSR_EUSAGE;
   if (status != MSR_OK) return aim->done ? MSR_OK : status;
   const bool good = m.point.stable && m.point.max <= c->wanted;
-  if (good && (!any || m.cost < c->best.cost)) c->best = m;
+  if (good) c->best = m; /* or it would have been ended at the cost of the best before */
   msri_aim_next(aim, &m, c->wanted);
   return MSR_OK;
 }
