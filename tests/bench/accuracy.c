@@ -10,6 +10,12 @@
 
 /* ---- Printing */
 
+#ifdef __clang__
+static const char compiler[] = __VERSION__;
+#else
+static const char compiler[] = "gcc " __VERSION__;
+#endif
+
 static void print_machine(const char *scipy) {
   char line[128], day[32], model[128] = "unknown machine";
   const time_t now = time(NULL);
@@ -18,7 +24,7 @@ static void print_machine(const char *scipy) {
   while (cpus && fgets(line, sizeof line, cpus))
     if (sscanf(line, "model name : %127[^\n]", model) == 1) break;
   if (cpus) fclose(cpus);
-  printf("%s, %s, compiler %s, libmsr %s; one thread.\n", day, model, __VERSION__, msr_version());
+  printf("%s, %s, %s, libmsr %s; one thread.\n", day, model, compiler, msr_version());
   printf("Boost.Odeint %s, SUNDIALS %s, GSL %s, SciPy %s.\n", odeint_version(), sundials_version(),
          gsl_version_text(), scipy);
   printf("The vectors of SUNDIALS are the benchmark's: Debian's package isn't optimised.\n\n");

@@ -41,8 +41,9 @@ double largest_distance(const double *q, const double *r);
  * elsewhere. */
 double clock_now(bool elsewhere);
 
-void *need(size_t count, size_t size);  /* zeroed; ends the program if there is none */
-void bench_fail(const char *what, ...); /* ends the program */
+void *need(size_t count, size_t size); /* zeroed; ends the program if there is none */
+/* Ends the program with a line on stderr. */
+void bench_fail(const char *what, ...) __attribute__((format(printf, 1, 2), noreturn));
 
 /* A method has one knob: the number of its steps, or the tolerance of one. */
 typedef struct method {
