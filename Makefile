@@ -275,7 +275,7 @@ figures: all
 	@mkdir -p $(REPORT)
 	$(call study,turn,--budget 120)
 	$(call study,assignment,--until 2 --budget 300)
-	$(call study,pendulum,--until 1 --budget 300)
+	$(call study,pendulum,--until 1 --budget 400)
 	sh docs/report/impacts.sh $(BUILD)/msr > docs/report/impacts.csv
 
 # ---- Installing ----------------------------------------------------------------------------------

@@ -217,7 +217,7 @@ SCENES = {
     letters: ("three letters tumble through pegs",
               "--neighbours 8 --restitution 0.6", 60, 0.1, 40000, 3000, 375),
     pendulum: ("a stiff rod swings from one pixel: slow motion, fast vibrations",
-               "--neighbours 8 --attach", 60, 0.1, 1500000000, 100, 50, 0.02),
+               "--neighbours 8 --attach", 60, 0.1, 1500000000, 50, 50, 0.04),
     rope: ("two ropes swing about one nail, undamped: chaos",
            "--attach", 200, 0.1, 30000, 2400, 300),
     stairs: ("a ball rolls down a ramp and stairs, by friction",
