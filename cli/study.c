@@ -7,6 +7,7 @@
 #include "status_line.h"
 #include "texts.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 static msr_status follow(void *data, const msr_accuracy_progress *progress) {
@@ -73,6 +74,16 @@ msr_status study_run(study *st, const settings *s, const msr_scene *scene, msr_e
 void study_free(study *st) {
   msr_accuracy_free(st->result);
   free(st->risky);
+}
+
+/* Smaller errors are the reference's own, or rounding. */
+static bool measurable(const study *st, const msr_accuracy_point *p) {
+  return p->max >= fmax(st->figures.reference_error, 1e-12);
+}
+
+double study_order(const study *st, size_t i) {
+  const msr_accuracy_point *p = &st->point[i];
+  return i > 0 && measurable(st, p - 1) && measurable(st, p) ? p->order : (double)NAN;
 }
 
 msr_status study_choose(const settings *s, const msr_scene *scene, msr_accuracy_choice *choice,

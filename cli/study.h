@@ -20,6 +20,9 @@ msr_status study_run(study *st, const settings *s, const msr_scene *scene, msr_e
 
 void study_free(study *st);
 
+/* The order measured at a point, in table and CSV; NAN: errors are too small to measure one. */
+double study_order(const study *st, size_t i);
+
 /* Chooses for --accuracy. What msr_accuracy_choose returns. */
 msr_status study_choose(const settings *s, const msr_scene *scene, msr_accuracy_choice *choice,
                         msr_error *err);

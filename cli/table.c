@@ -79,13 +79,14 @@ static cell order(double value) {
   return c;
 }
 
-static void print_point(FILE *out, const msr_accuracy_point *p, bool risky) {
+static void print_point(FILE *out, const study *st, size_t i) {
+  const msr_accuracy_point *p = &st->point[i];
   fprintf(out, "%c%c %-17s %8s %8" PRIu64 " %9" PRIu64 " %7s %8s", p->front ? '*' : ' ',
-          risky ? '!' : ' ', p->integrator->name, step(p).text, p->steps, p->evaluations,
+          st->risky[i] ? '!' : ' ', p->integrator->name, step(p).text, p->steps, p->evaluations,
           figure(1e3 * p->seconds).text, p->stable ? error(p->rms).text : "unstable");
   if (p->stable) {
     fprintf(out, " %8s %8s %8s %6s", error(p->max).text, error(p->drift).text,
-            figure(100 * p->pixels).text, order(p->order).text);
+            figure(100 * p->pixels).text, order(study_order(st, i)).text);
   }
   fputc('\n', out);
 }
@@ -156,7 +157,7 @@ static void print_answer(FILE *out, const study *st) {
 void table_print(FILE *out, const study *st) {
   print_head(out, st);
   print_titles(out);
-  for (size_t i = 0; i < st->n; i++) print_point(out, &st->point[i], st->risky[i]);
+  for (size_t i = 0; i < st->n; i++) print_point(out, st, i);
   print_notes(out, st);
   print_answer(out, st);
 }
