@@ -31,19 +31,23 @@ static msr_status look(const msr_scene *scene, const msr_integrator *integrator,
   return MSR_OK;
 }
 
-/* A run that goes on where the study ended may explode there. */
+bool study_short(const study *st) { return st->figures.horizon < st->time * (1 - 1e-9); }
+
+/* A run that goes on where the study ended may explode there: the library's own steps don't. */
 static msr_status look_for_risks(study *st, const msr_scene *scene, msr_error *err) {
   msr_plan_figures plan = {.dt = 0};
   msr_status status = look(scene, NULL, &st->contacts, &plan, err);
   st->risky = calloc(st->n + 1, sizeof *st->risky);
   if (!st->risky) return fail(err, MSR_ENOMEM, "out of memory for the table");
-  if (st->figures.horizon >= plan.dt * (double)plan.iterations * (1 - 1e-9)) return status;
+  st->dt = plan.dt;
+  st->time = plan.dt * (double)plan.iterations;
+  if (!study_short(st)) return status;
   for (size_t i = 0; i < st->n && status == MSR_OK; i++) {
     const msr_accuracy_point *p = &st->point[i];
     if (plan.integrator != p->integrator) {
       status = look(scene, p->integrator, &st->contacts, &plan, err);
     }
-    st->risky[i] = p->stable && plan.dt / (double)p->substeps > plan.stable_step;
+    st->risky[i] = p->stable && plan.dt / (double)p->substeps > plan.safe_step;
   }
   return status;
 }
