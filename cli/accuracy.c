@@ -77,6 +77,7 @@ static msr_status finish(const study *st, files *out, msr_error *err) {
   const int caught = signals_caught();
   const msr_status status = write_all(st, out, err);
   if (status != MSR_OK) return status;
+  study_tell_limits(st);
   if (caught)
     return fail(err, MSR_EINTR, "interrupted after %zu point%s", st->n, st->n == 1 ? "" : "s");
   if (!st->figures.complete) {

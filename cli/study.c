@@ -7,6 +7,7 @@
 #include "status_line.h"
 #include "texts.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -78,6 +79,39 @@ msr_status study_run(study *st, const settings *s, const msr_scene *scene, msr_e
 void study_free(study *st) {
   msr_accuracy_free(st->result);
   free(st->risky);
+}
+
+static void tell_until(const study *st) {
+  char text[128];
+  if (st->s->until <= 0 || st->s->until >= st->dt * (1 - 1e-9)) return;
+  snprintf(text, sizeof text, "--until %g is less than one DT: the first DT, %g s, is compared",
+           st->s->until, st->dt);
+  tell(st->s, "note", text);
+}
+
+/* Where it's so little that the table may mislead. */
+static void tell_horizon(const study *st) {
+  char text[256];
+  const msr_accuracy_figures *f = &st->figures;
+  const char *const plural = f->frames == 1 ? "" : "s";
+  if (f->frames >= 3 && f->horizon >= 0.01 * f->until) return;
+  if (f->horizon >= f->until * (1 - 1e-9)) {
+    snprintf(text, sizeof text,
+             "only %" PRIu64 " instant%s up to %.6g s compared: no error in between is seen",
+             f->frames, plural, f->horizon);
+  } else {
+    snprintf(text, sizeof text,
+             "only the first %.6g s of %.6g s could be compared, at %" PRIu64 " instant%s: nothing "
+             "is known of errors after that; a larger --budget may get further, unless impacts "
+             "make the motion chaotic",
+             f->horizon, f->until, f->frames, plural);
+  }
+  tell(st->s, "note", text);
+}
+
+void study_tell_limits(const study *st) {
+  tell_until(st);
+  tell_horizon(st);
 }
 
 /* Smaller errors are the reference's own, or rounding. */

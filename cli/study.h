@@ -21,6 +21,9 @@ msr_status study_run(study *st, const settings *s, const msr_scene *scene, msr_e
 
 void study_free(study *st);
 
+/* Tells the user of times that are shorter than they seem. */
+void study_tell_limits(const study *st);
+
 /* Does the scene go on after what was compared? */
 bool study_short(const study *st);
 
