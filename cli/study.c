@@ -34,6 +34,14 @@ static msr_status look(const msr_scene *scene, const msr_integrator *integrator,
 
 bool study_short(const study *st) { return st->figures.horizon < st->time * (1 - 1e-9); }
 
+/* The step of a point, and the largest that is safe. What chooses its own steps is safe at any
+ * where nothing is hit; else, if its tolerance makes it follow every spring, as Verlet has to. */
+static bool is_risky(const study *st, const msr_accuracy_point *p, double safe, double follows) {
+  if (!p->stable) return false;
+  if (!p->integrator->adaptive) return st->dt / (double)p->substeps > safe;
+  return st->contacts && st->figures.horizon / (double)p->steps > follows;
+}
+
 /* A run that goes on where the study ended may explode there: the library's own steps don't. */
 static msr_status look_for_risks(study *st, const msr_scene *scene, msr_error *err) {
   msr_plan_figures plan = {.dt = 0};
@@ -43,12 +51,13 @@ static msr_status look_for_risks(study *st, const msr_scene *scene, msr_error *e
   st->dt = plan.dt;
   st->time = plan.dt * (double)plan.iterations;
   if (!study_short(st)) return status;
+  const double follows = plan.safe_step;
   for (size_t i = 0; i < st->n && status == MSR_OK; i++) {
     const msr_accuracy_point *p = &st->point[i];
     if (plan.integrator != p->integrator) {
       status = look(scene, p->integrator, &st->contacts, &plan, err);
     }
-    st->risky[i] = p->stable && plan.dt / (double)p->substeps > plan.safe_step;
+    st->risky[i] = is_risky(st, p, plan.safe_step, follows);
   }
   return status;
 }

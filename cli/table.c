@@ -100,7 +100,9 @@ static bool any_risky(const study *st) {
 static void print_notes(FILE *out, const study *st) {
   fputs("\n* nothing is both faster and more accurate\n", out);
   if (any_risky(st)) {
-    fputs("! above the steps that are safe to the end: the rest of the scene may explode\n", out);
+    fputs("! above the steps that are safe to the end: the rest of the scene may heat up or "
+          "explode\n",
+          out);
   }
   fputs("substeps: per DT, or the tolerance of a method that chooses its steps; forces: "
         "evaluations;\n"
