@@ -53,9 +53,13 @@ static msr_status write_csv(const study *st, files *out, msr_error *err) {
   return whole_file_commit(&out->csv, err);
 }
 
+/* After a signal, which is told instead, a figure that can't be drawn is no further failure. */
 static msr_status write_figure(const study *st, files *out, msr_error *err) {
-  if (out->no_figure.status != MSR_OK) *err = out->no_figure;
-  if (!out->figure.stream) return out->no_figure.status;
+  if (out->no_figure.status != MSR_OK && !signals_caught()) {
+    *err = out->no_figure;
+    return err->status;
+  }
+  if (!out->figure.stream) return MSR_OK;
   const msr_status status = figure_draw(st, fileno(out->figure.stream), err);
   return status == MSR_OK ? whole_file_commit(&out->figure, err) : status;
 }
@@ -77,6 +81,7 @@ static msr_status finish(const study *st, files *out, msr_error *err) {
   const int caught = signals_caught();
   const msr_status status = write_all(st, out, err);
   if (status != MSR_OK) return status;
+  study_tell_limits(st);
   if (caught)
     return fail(err, MSR_EINTR, "interrupted after %zu point%s", st->n, st->n == 1 ? "" : "s");
   if (!st->figures.complete) {

@@ -32,13 +32,14 @@ static void print_figures(FILE *out, const study *st) {
 }
 
 /* 0 or 1, as programs like it. */
-static void print_point(FILE *out, const msr_accuracy_point *p) {
-  const double values[] = {p->seconds, p->rms, p->max, p->drift, p->pixels, p->order};
+static void print_point(FILE *out, const study *st, size_t i) {
+  const msr_accuracy_point *p = &st->point[i];
+  const double values[] = {p->seconds, p->rms, p->max, p->drift, p->pixels, study_order(st, i)};
   fprintf(out, "%s,%" PRIu64 ",", p->integrator->name, p->substeps);
   if (p->integrator->adaptive) fputs(number_exact(p->atol).text, out);
   fprintf(out, ",%d,%" PRIu64 ",%" PRIu64, p->stable, p->steps, p->evaluations);
-  for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
-    fprintf(out, ",%s", isfinite(values[i]) ? number_exact(values[i]).text : "");
+  for (size_t j = 0; j < sizeof values / sizeof values[0]; j++) {
+    fprintf(out, ",%s", isfinite(values[j]) ? number_exact(values[j]).text : "");
   }
   fprintf(out, ",%d\n", p->front);
 }
@@ -50,5 +51,5 @@ void csv_print(FILE *out, const study *st) {
       "method,substeps,tolerance,stable,steps,evaluations,seconds,rms_px,max_px,drift,pixels,order,"
       "front\n",
       out);
-  for (size_t i = 0; i < st->n; i++) print_point(out, &st->point[i]);
+  for (size_t i = 0; i < st->n; i++) print_point(out, st, i);
 }

@@ -7,6 +7,8 @@
 #include "status_line.h"
 #include "texts.h"
 
+#include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 
 static msr_status follow(void *data, const msr_accuracy_progress *progress) {
@@ -30,19 +32,32 @@ static msr_status look(const msr_scene *scene, const msr_integrator *integrator,
   return MSR_OK;
 }
 
-/* A run that goes on where the study ended may explode there. */
+bool study_short(const study *st) { return st->figures.horizon < st->time * (1 - 1e-9); }
+
+/* The step of a point, and the largest that is safe. What chooses its own steps is safe at any
+ * where nothing is hit; else, if its tolerance makes it follow every spring, as Verlet has to. */
+static bool is_risky(const study *st, const msr_accuracy_point *p, double safe, double follows) {
+  if (!p->stable) return false;
+  if (!p->integrator->adaptive) return st->dt / (double)p->substeps > safe;
+  return st->contacts && st->figures.horizon / (double)p->steps > follows;
+}
+
+/* A run that goes on where the study ended may explode there: the library's own steps don't. */
 static msr_status look_for_risks(study *st, const msr_scene *scene, msr_error *err) {
   msr_plan_figures plan = {.dt = 0};
   msr_status status = look(scene, NULL, &st->contacts, &plan, err);
   st->risky = calloc(st->n + 1, sizeof *st->risky);
   if (!st->risky) return fail(err, MSR_ENOMEM, "out of memory for the table");
-  if (st->figures.horizon >= plan.dt * (double)plan.iterations * (1 - 1e-9)) return status;
+  st->dt = plan.dt;
+  st->time = plan.dt * (double)plan.iterations;
+  if (!study_short(st)) return status;
+  const double follows = plan.safe_step;
   for (size_t i = 0; i < st->n && status == MSR_OK; i++) {
     const msr_accuracy_point *p = &st->point[i];
     if (plan.integrator != p->integrator) {
       status = look(scene, p->integrator, &st->contacts, &plan, err);
     }
-    st->risky[i] = p->stable && plan.dt / (double)p->substeps > plan.stable_step;
+    st->risky[i] = is_risky(st, p, plan.safe_step, follows);
   }
   return status;
 }
@@ -73,6 +88,49 @@ msr_status study_run(study *st, const settings *s, const msr_scene *scene, msr_e
 void study_free(study *st) {
   msr_accuracy_free(st->result);
   free(st->risky);
+}
+
+static void tell_until(const study *st) {
+  char text[128];
+  if (st->s->until <= 0 || st->s->until >= st->dt * (1 - 1e-9)) return;
+  snprintf(text, sizeof text, "--until %g is less than one DT: the first DT, %g s, is compared",
+           st->s->until, st->dt);
+  tell(st->s, "note", text);
+}
+
+/* Where it's so little that the table may mislead. */
+static void tell_horizon(const study *st) {
+  char text[256];
+  const msr_accuracy_figures *f = &st->figures;
+  const char *const plural = f->frames == 1 ? "" : "s";
+  if (f->frames >= 3 && f->horizon >= 0.01 * f->until) return;
+  if (f->horizon >= f->until * (1 - 1e-9)) {
+    snprintf(text, sizeof text,
+             "only %" PRIu64 " instant%s up to %.6g s compared: no error in between is seen",
+             f->frames, plural, f->horizon);
+  } else {
+    snprintf(text, sizeof text,
+             "only the first %.6g s of %.6g s could be compared, at %" PRIu64 " instant%s: nothing "
+             "is known of errors after that; a larger --budget may get further, unless impacts "
+             "make the motion chaotic",
+             f->horizon, f->until, f->frames, plural);
+  }
+  tell(st->s, "note", text);
+}
+
+void study_tell_limits(const study *st) {
+  tell_until(st);
+  tell_horizon(st);
+}
+
+/* Smaller errors are the reference's own, or rounding. */
+static bool measurable(const study *st, const msr_accuracy_point *p) {
+  return p->max >= fmax(st->figures.reference_error, 1e-12);
+}
+
+double study_order(const study *st, size_t i) {
+  const msr_accuracy_point *p = &st->point[i];
+  return i > 0 && measurable(st, p - 1) && measurable(st, p) ? p->order : (double)NAN;
 }
 
 msr_status study_choose(const settings *s, const msr_scene *scene, msr_accuracy_choice *choice,

@@ -79,13 +79,14 @@ static cell order(double value) {
   return c;
 }
 
-static void print_point(FILE *out, const msr_accuracy_point *p, bool risky) {
+static void print_point(FILE *out, const study *st, size_t i) {
+  const msr_accuracy_point *p = &st->point[i];
   fprintf(out, "%c%c %-17s %8s %8" PRIu64 " %9" PRIu64 " %7s %8s", p->front ? '*' : ' ',
-          risky ? '!' : ' ', p->integrator->name, step(p).text, p->steps, p->evaluations,
+          st->risky[i] ? '!' : ' ', p->integrator->name, step(p).text, p->steps, p->evaluations,
           figure(1e3 * p->seconds).text, p->stable ? error(p->rms).text : "unstable");
   if (p->stable) {
     fprintf(out, " %8s %8s %8s %6s", error(p->max).text, error(p->drift).text,
-            figure(100 * p->pixels).text, order(p->order).text);
+            figure(100 * p->pixels).text, order(study_order(st, i)).text);
   }
   fputc('\n', out);
 }
@@ -99,7 +100,8 @@ static bool any_risky(const study *st) {
 static void print_notes(FILE *out, const study *st) {
   fputs("\n* nothing is both faster and more accurate\n", out);
   if (any_risky(st)) {
-    fputs("! above the step that is stable at any stretch: the rest of the scene may explode\n",
+    fputs("! above the steps that are safe to the end: the rest of the scene may heat up or "
+          "explode\n",
           out);
   }
   fputs("substeps: per DT, or the tolerance of a method that chooses its steps; forces: "
@@ -124,39 +126,56 @@ static const msr_accuracy_point *cheapest_to_the_end(const study *st, double tar
   return best;
 }
 
-static void print_choice(FILE *out, const study *st, const msr_accuracy_point *p) {
+static const double targets[] = {1, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
+static const size_t n_targets = sizeof targets / sizeof targets[0];
+
+/* NULL: there is none. */
+static const msr_accuracy_point *choose(const study *st, size_t target) {
+  if (target == n_targets || targets[target] < st->figures.reference_error) return NULL;
+  const msr_accuracy_point *const to_the_end = cheapest_to_the_end(st, targets[target]);
+  return to_the_end ? to_the_end : msr_accuracy_cheapest(st->result, targets[target]);
+}
+
+/* With what it holds for, if that isn't all of the scene. */
+static void print_choice(FILE *out, const study *st, double target, const msr_accuracy_point *p) {
   msr_plan_options options = method_of(p);
+  const bool brief = study_short(st), risky = st->risky[p - st->point];
   options.impacts = st->contacts ? MSR_IMPACTS_LOCATED : MSR_IMPACTS_KEPT;
-  fprintf(out, ": %s, %s ms: ", method_name(&options).text, figure(1e3 * p->seconds).text);
+  fprintf(out, "cheapest for %g px", target);
+  if (brief) fprintf(out, " up to %.6g s%s", st->figures.horizon, risky ? ", no further" : "");
+  fprintf(out, ": %s, %s ms%s: ", method_name(&options).text, figure(1e3 * p->seconds).text,
+          brief ? " up to there" : "");
   command_line_print_run(out, st->s, &options);
   fputc('\n', out);
 }
 
-static bool print_cheapest(FILE *out, const study *st, double target) {
-  const msr_accuracy_point *to_the_end = cheapest_to_the_end(st, target);
-  const msr_accuracy_point *p = to_the_end ? to_the_end : msr_accuracy_cheapest(st->result, target);
-  if (!p) {
-    fprintf(out, "nothing measured is within %g px\n", target);
-    return false;
-  }
-  fprintf(out, "cheapest for %g px", target);
-  if (!to_the_end) fprintf(out, " up to %.6g s", st->figures.horizon);
-  print_choice(out, st, p);
-  return true;
+/* One line per choice, and one for the further targets that it is good for; returns the next. */
+static size_t print_cheapest(FILE *out, const study *st, size_t target) {
+  const msr_accuracy_point *const p = choose(st, target);
+  const size_t second = target + 1;
+  size_t next = second;
+  print_choice(out, st, targets[target], p);
+  while (choose(st, next) == p) next++;
+  if (next == second) return next;
+  fprintf(out, "cheapest for %g", targets[second]);
+  if (next > second + 1) fprintf(out, " .. %g", targets[next - 1]);
+  fputs(" px: the same\n", out);
+  return next;
 }
 
 /* For 1, 0.1, 0.01 px ... down to what the reference resolves. */
 static void print_answer(FILE *out, const study *st) {
-  static const double targets[] = {1, 0.1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
-  for (size_t i = 0; i < sizeof targets / sizeof targets[0]; i++) {
-    if (targets[i] < st->figures.reference_error || !print_cheapest(out, st, targets[i])) break;
+  size_t i = 0;
+  while (choose(st, i)) i = print_cheapest(out, st, i);
+  if (i < n_targets && targets[i] >= st->figures.reference_error) {
+    fprintf(out, "nothing measured is within %g px\n", targets[i]);
   }
 }
 
 void table_print(FILE *out, const study *st) {
   print_head(out, st);
   print_titles(out);
-  for (size_t i = 0; i < st->n; i++) print_point(out, &st->point[i], st->risky[i]);
+  for (size_t i = 0; i < st->n; i++) print_point(out, st, i);
   print_notes(out, st);
   print_answer(out, st);
 }
