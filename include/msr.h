@@ -388,8 +388,9 @@ MSR_API extern const msr_integrator msr_integrator_msadams;
 
 /* Implicit, stable at any step where forces are linear. Each stage is solved to rounding by
  * Newton's method, with the system's linearise and solve or, without them, by differences of a
- * (BiCGSTAB; van der Vorst 1992), for which open takes 7 more vectors of n doubles. What depends on
- * v acts by damp(), for half a step at each end. MSR_EUNSTABLE if a stage isn't solved in 200
+ * (BiCGSTAB; van der Vorst 1992). Memory: 7 vectors of n doubles, of sdirk2 8; without solve, 7
+ * more; on a scene, the matrix of its springs, which msr_plan_figures counts. What depends on v
+ * acts by damp(), for half a step at each end. MSR_EUNSTABLE if a stage isn't solved in 200
  * iterations, or isn't finite; on a scene of 2^32 - 1 masses or springs or more, msr_plan_create
  * returns MSR_EUSAGE. energy-momentum keeps the energy only if the system has between(), as a scene
  * has; else it is the implicit midpoint rule. */

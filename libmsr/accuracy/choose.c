@@ -10,7 +10,8 @@
  * That is no promise, though: beyond what was tried a mass may meet a support, or a lattice buckle.
  *
  * Costs are counted in calls of forces, and planned by the time that they take on a common machine,
- * so that the choice is the same again. */
+ * so that the choice is the same again, while neither the budget nor the reference's part of it
+ * runs out. */
 #include "accuracy/aim.h"
 #include "accuracy/ladder.h"
 
