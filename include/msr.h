@@ -385,6 +385,15 @@ MSR_API extern const msr_integrator msr_integrator_rkf45;
 MSR_API extern const msr_integrator msr_integrator_rkck;
 MSR_API extern const msr_integrator msr_integrator_rk8pd;
 MSR_API extern const msr_integrator msr_integrator_msadams;
+
+/* Implicit, stable at any step where forces are linear. Each stage is solved to rounding by
+ * Newton's method, with the system's linearise and solve or, without them, by differences of a
+ * (BiCGSTAB; van der Vorst 1992). Memory: 7 vectors of n doubles, of sdirk2 8; without solve, 7
+ * more; on a scene, the matrix of its springs, which msr_plan_figures counts. What depends on v
+ * acts by damp(), for half a step at each end. MSR_EUNSTABLE if a stage isn't solved in 200
+ * iterations, or isn't finite; on a scene of 2^32 - 1 masses or springs or more, msr_plan_create
+ * returns MSR_EUSAGE. energy-momentum keeps the energy only if the system has between(), as a scene
+ * has; else it is the implicit midpoint rule. */
 MSR_API extern const msr_integrator msr_integrator_backward_euler;
 MSR_API extern const msr_integrator msr_integrator_implicit_midpoint;
 MSR_API extern const msr_integrator msr_integrator_sdirk2;
@@ -489,9 +498,9 @@ typedef struct msr_plan msr_plan;
  * depend on v. */
 typedef enum msr_impacts {
   MSR_IMPACTS_KEPT,   /* it keeps its old place for the step, and its velocity is reflected: order 1
-                       * through a bounce, and energy is kept for ever so long */
-  MSR_IMPACTS_LOCATED /* it is reflected when its path meets the support; energy is kept nearly as
-                       * well by safe steps, and less above them */
+                       * through a bounce; by safe steps elastic impacts don't heat */
+  MSR_IMPACTS_LOCATED /* it is reflected when its path meets the support; by safe steps elastic
+                       * impacts heat by little, above them by more than with the other rule */
 } msr_impacts;
 
 typedef struct msr_plan_options {
@@ -506,8 +515,9 @@ typedef struct msr_plan_options {
 
 /* Compiles the scene, which may be freed after; the integrator must outlive the plan. `options` may
  * be NULL. MSR_EUSAGE if the integrator lacks name, summary or step, or a tolerance isn't finite or
- * is negative; MSR_EINPUT if no number of substeps is enough; MSR_ENOMEM; or what force->prepare or
- * force->rates returns. */
+ * is negative, or if the integrator is implicit and there are 2^32 - 1 masses or springs or more;
+ * MSR_EINPUT if no number of substeps is enough; MSR_ENOMEM; or what force->prepare or force->rates
+ * returns. */
 MSR_API msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *options,
                                    msr_plan **plan, msr_error *err);
 
@@ -559,7 +569,7 @@ MSR_API bool msr_plan_pixel(const msr_plan *plan, size_t mass, size_t *column, s
 
 typedef struct msr_state msr_state;
 
-/* The state at t = 0. The plan must outlive it. MSR_ENOMEM. */
+/* The state at t = 0; the plan must outlive it. MSR_ENOMEM, what the integrator's open returns. */
 MSR_API msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *err);
 
 MSR_API void msr_state_free(msr_state *state);
@@ -705,8 +715,8 @@ typedef struct msr_accuracy_point {
   const msr_integrator *integrator;
   uint64_t substeps; /* per iteration */
   double atol;       /* of an adaptive method; else 0 */
-  bool stable;       /* false: the run was stopped, or left the truth by the picture's size; the
-                      * errors are INFINITY then, and seconds NAN */
+  bool stable;       /* false: the run was stopped, or left the truth by the picture's size; rms
+                      * and max are INFINITY then, seconds, drift, pixels and order NAN */
   uint64_t steps, evaluations; /* of the run */
   double seconds;  /* of the run: processor time of the thread, which a busy machine hardly changes;
                     * the least of several runs that do nothing else; NAN: none was made */
@@ -750,16 +760,19 @@ typedef struct msr_accuracy_figures {
   uint64_t witness_substeps;
   double witness_atol; /* 0: it isn't adaptive */
   size_t masses, springs;
-  uint64_t scene_hash; /* of masses, springs, effects and times: equal for equal scenes */
+  uint64_t scene_hash; /* of masses, springs, supports, times and forces (name and bytes of the
+                        * params): equal for scenes made equally */
   double seconds;      /* that the study took */
   bool complete;       /* false: the budget or poll ended it early */
 } msr_accuracy_figures;
 
 typedef struct msr_accuracy msr_accuracy;
 
-/* Runs the scene with every method at many steps or tolerances and compares. The reference is
- * found first, in a quarter of the budget; coarse runs come before fine ones. But for `seconds` and
- * `front`, the result depends on the clock only if the budget runs out. `options` may be NULL.
+/* Runs the scene with every method at many steps or tolerances and compares; coarse runs come
+ * before fine ones. The reference is found first, in a quarter of the budget, or half of it if that
+ * doesn't reach half of the time: if it isn't enough, how fine the reference is and how far it goes
+ * depend on the clock, and so with it all points. What else depends on the clock is `seconds`,
+ * `front`, and, where the budget runs out, which points there are. `options` may be NULL.
  * MSR_EUSAGE for options out of range; MSR_EINPUT if there is no mass or no iteration;
  * MSR_EUNSTABLE if no reference can be found, for any length of time; MSR_ENOMEM; what a force or
  * poll returns. */
@@ -770,7 +783,8 @@ MSR_API void msr_accuracy_free(msr_accuracy *accuracy);
 
 MSR_API msr_accuracy_figures msr_accuracy_describe(const msr_accuracy *accuracy);
 
-/* All points, method by method, from the largest step to the smallest; they are the study's. */
+/* All points, method by method, from the largest step to the smallest; they are the study's. `n`
+ * may be 0: when poll or the budget ends a study right after its reference. */
 MSR_API const msr_accuracy_point *msr_accuracy_points(const msr_accuracy *accuracy, size_t *n);
 
 /* The fastest point whose largest error, with the reference's own, is at most `error` [px]; NULL:
@@ -780,15 +794,16 @@ MSR_API const msr_accuracy_point *msr_accuracy_cheapest(const msr_accuracy *accu
 /* What brings every mass within `error` [px] of the truth over the run at the least time. */
 typedef struct msr_accuracy_choice {
   msr_plan_options options; /* for msr_plan_create */
-  double error;             /* estimated, largest over the run or up to the horizon [px] */
+  double error;             /* estimated, largest at the instants compared [px] */
   double seconds;           /* estimated, of the run */
   double horizon;           /* [s]; below the scene's time if no error can be promised beyond it */
   char reason[MSR_MESSAGE_SIZE]; /* one line */
 } msr_accuracy_choice;
 
-/* Chooses by short pilot studies of the scene. `options` may be NULL: its budget is 10 s here. The
- * choice depends on the clock only if the budget runs out. As msr_accuracy_study; MSR_EUNSTABLE if
- * nothing tried is as accurate; what poll returns. */
+/* Chooses by short pilot studies of the scene. `options` may be NULL: its budget is 10 s here.
+ * `seconds` aside, the choice depends on the clock only if the budget, or a part of it, runs out:
+ * half of it for the reference, a quarter for a first study of the scene's beginning. Errors as of
+ * msr_accuracy_study; MSR_EUNSTABLE if nothing tried is as accurate; what poll returns. */
 MSR_API msr_status msr_accuracy_choose(const msr_scene *scene, double error,
                                        const msr_accuracy_options *options,
                                        msr_accuracy_choice *choice, msr_error *err);

@@ -2,15 +2,16 @@
  *
  * Every method aims at the error, against a reference, on that very scene; the one whose next run
  * promises to be the cheapest is always the next, until none can be cheaper than the best that was
- * as accurate as asked. Over the whole run that is a proof: the run to come is the one that was
- * tried. If the whole is too long for the budget, this is done on its beginning, then on as much
- * as can be afforded, with those that are still in question; a smaller error is aimed at then, so
- * that there is room for it to grow as it did: e ~ t^g with g as measured, but at least 1 for
- * symplectic methods and 2 for others. That is no promise, though: beyond what was tried a mass may
- * meet a support, or a lattice buckle.
+ * as accurate as asked. Over the whole run nothing is foretold: the run to come has the same bits
+ * as the one that was tried, compared at the instants. If the whole is too long for the budget,
+ * this is done on its beginning, then on as much as can be afforded, with those that are still in
+ * question; a smaller error is aimed at then, so that there is room for it to grow as it did: e ~
+ * t^g with g as measured, but at least 1 for symplectic or reversible methods and 2 for others.
+ * That is no promise, though: beyond what was tried a mass may meet a support, or a lattice buckle.
  *
  * Costs are counted in calls of forces, and planned by the time that they take on a common machine,
- * so that the choice is the same again. */
+ * so that the choice is the same again, while neither the budget nor the reference's part of it
+ * runs out. */
 #include "accuracy/aim.h"
 #include "accuracy/ladder.h"
 

@@ -44,7 +44,7 @@ struct msr_plan {
   bool driven;          /* a force drives: states follow its work */
   bool middle;          /* a force without between() acts in the middle of a step: likewise */
   msri_graph *graph;    /* of the springs, if the integrator is implicit */
-  msri_contact contact; /* move NULL: nothing is ever in the way */
+  msri_contact contact; /* drift NULL: nothing is ever in the way */
   msr_effect *effect;   /* [n_effects]; the first n_terms are the terms */
   char (*reason)[MSR_MESSAGE_SIZE]; /* of the effects */
   size_t n_effects;

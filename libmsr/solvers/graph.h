@@ -5,14 +5,14 @@
 #include "base/base.h"
 
 /* The pairs i < j of masses that runs of springs tie, in one block of memory that free takes. Pairs
- * begin[i] .. begin[i+1]-1 are those of mass i, with end[pair] = j rising; spring s, counted along
- * the runs, belongs to pair of[s]. */
+ * p = begin[i] .. begin[i+1]-1 are those of mass i, with j = end[p] rising; spring s, counted along
+ * the runs, belongs to pair pair[s]. */
 typedef struct msri_graph {
-  size_t n, pairs, bytes;       /* masses; of this block */
+  size_t n, pairs, bytes;       /* n: masses; bytes: of this block */
   uint32_t *begin, *end, *pair; /* [n+1], [pairs], [springs] */
 } msri_graph;
 
-/* MSR_EUSAGE if there are 2^32 masses or springs, MSR_ENOMEM. */
+/* MSR_EUSAGE if there are UINT32_MAX masses or springs or more, MSR_ENOMEM. */
 msr_status msri_graph_create(size_t n, const msr_springs *springs, msri_graph **graph,
                              msr_error *err);
 
