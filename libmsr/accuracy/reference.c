@@ -54,7 +54,7 @@ static bool pays(const quest *q, const msri_reference *a, const msri_reference *
   if (a->n == 0) return true;
   if (!better(a, b)) return false;
   const bool exacter = b->gap[a->n - 1] < a->gap[a->n - 1] / 2;
-  if (b->n == q->setting->n) return exacter || b->n > a->n;
+  if (b->n == q->setting->n || q->goal->longer == 0) return exacter || b->n > a->n;
   const double longer = q->setting->contacts ? q->goal->longer : 0;
   return (double)b->n > (1 + longer) * (double)a->n;
 }

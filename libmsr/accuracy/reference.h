@@ -19,8 +19,9 @@ typedef struct msri_reference {
 typedef struct msri_reference_goal {
   double parted; /* beyond this difference they don't agree [px] */
   double enough; /* a smaller one needn't be refined [px] */
-  double longer; /* share by which an early horizon must move for refining to pay */
-  double share;  /* of the budget */
+  double
+      longer; /* share by which an early horizon must move for refining to pay; 0: any gain pays */
+  double share; /* of the budget */
 } msri_reference_goal;
 
 /* Finds the longest and finest reference. MSR_EUNSTABLE if two methods agree at no instant, or what
