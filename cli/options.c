@@ -40,7 +40,7 @@ const option all_options[] = {
      FIELD(atol)},
     {0, "rtol", "TOL", "added to it: a share of the largest number (0)", FOR_RUNS, &a_size,
      FIELD(rtol)},
-    {0, "impacts", "kept|located", "at supports: energy kept, or the order (kept)", FOR_RUNS,
+    {0, "impacts", "kept|located", "order 1 and no heating, or the full order (kept)", FOR_RUNS,
      &a_rule, FIELD(impacts)},
 
     {0, "until", "T", "how much of the scene is compared, in s (all)", FOR_ACCURACY, &a_positive,
