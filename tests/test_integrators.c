@@ -282,7 +282,7 @@ static void stages_are_at_t_plus_c_h(void **state) {
 static void check_odd_steps(const msr_integrator *integrator) {
   counted c = {.omega = 1};
   const msr_system system = system_of(&plains[1], &c);
-  const double odd[] = {INFINITE, -INFINITE, NAN};
+  const double odd[] = {INFINITE, -INFINITE, (double)NAN};
   double z[2] = {0.3, -0.2};
   must(msr_integrate(integrator, &system, 0, 0, 3, z, z + 1, &why));
   for (size_t i = 0; i < LENGTH(odd); i++) {
