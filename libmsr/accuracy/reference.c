@@ -38,7 +38,7 @@ typedef struct quest {
   double share;            /* of the budget, to be kept to */
   double spent;            /* on its last level [s] */
   double cost;             /* of the last level that was tried */
-  bool pays;               /* was that worth it? */
+  int vain;                /* levels in a row that weren't worth it */
 } quest;
 
 /* Does b reach as far as a, with less error there? */
@@ -82,27 +82,29 @@ static msr_status try(quest *q, const msri_rivals *pair, int level, msr_error *e
   const msr_status status = msri_duel(q->setting, pair, level, q->goal->parted, &next, err);
   if (status != MSR_OK) return status;
   const bool keep = better(&q->best, &next);
-  q->pays = pays(q, &q->best, &next);
+  q->vain = pays(q, &q->best, &next) ? 0 : q->vain + 1;
   q->cost = next.cost;
   msri_reference worse = keep ? q->best : next;
   if (keep) {
     q->best = next;
     q->pair = pair;
-    q->spent = msri_watch_elapsed(&q->setting->watch) - start;
   }
+  if (q->pair == pair) q->spent = msri_watch_elapsed(&q->setting->watch) - start;
   msri_reference_clear(&worse);
   return MSR_OK;
 }
 
 /* Level after level of a pair, from the one given, while the next costs less than `most` or, if
- * that is no limit, while it pays. */
+ * that is no limit, while it pays. At supports finer steps may by chance be worse: a study goes on
+ * past one level in vain. */
 static msr_status refine(quest *q, const msri_rivals *pair, int level, double most,
                          msr_error *err) {
   msr_status status = MSR_OK;
-  q->pays = true;
+  const int patience = q->setting->contacts && q->goal->longer == 0 ? 1 : 0;
+  q->vain = 0;
   q->cost = 0;
   for (; status == MSR_OK && level < MOST_LEVELS; level++) {
-    const bool vain = q->best.n == 0 ? level >= MOST_VAIN : most == HUGE_VAL && !q->pays;
+    const bool vain = q->best.n == 0 ? level >= MOST_VAIN : most == HUGE_VAL && q->vain > patience;
     if (good_enough(q) || vain || !time_for_more(q) || 2 * q->cost > most) break;
     status = try(q, pair, level, err);
   }
