@@ -1,6 +1,7 @@
 /* plan.c - msr plan: what would be simulated and why, what it would take; nothing is run. */
 #include "commands.h"
 #include "report.h"
+#include "signals.h"
 #include "simulation.h"
 
 #include <inttypes.h>
@@ -133,5 +134,7 @@ msr_status plan_command(const settings *s, msr_error *err) {
   puts("effects");
   simulation_print_effects(stdout, plan);
   msr_plan_free(plan);
-  return print_end(err);
+  const msr_status printed = print_end(err);
+  signals_end_by_pipe();
+  return printed;
 }
