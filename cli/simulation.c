@@ -78,6 +78,12 @@ static void tell_notes(const settings *s, const msr_plan *plan) {
   }
 }
 
+/* Was the very run that is to come tried, from its beginning to its end? */
+static bool was_tried(const msr_accuracy_choice *choice, const msr_plan *plan) {
+  const msr_plan_figures f = msr_plan_describe(plan);
+  return choice->horizon >= (1 - 1e-9) * f.dt * (double)f.iterations;
+}
+
 static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **plan,
                           msr_error *err) {
   const bool chooses = s->accuracy > 0;
@@ -86,7 +92,7 @@ static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **
   if (status == MSR_OK) status = msr_plan_create(scene, &choice.options, plan, err);
   if (status != MSR_OK) return status;
   if (chooses) study_tell_choice(s, &choice);
-  tell_notes(s, *plan);
+  if (!chooses || !was_tried(&choice, *plan)) tell_notes(s, *plan);
   return MSR_OK;
 }
 
