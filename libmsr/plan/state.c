@@ -9,13 +9,15 @@
 
 /* ---- Memory */
 
-/* Where each array lies in the block, in bytes; `bytes` is the whole. */
+/* Of the arrays: a line of the cache and the widest vector, else loads straddle two lines. */
+enum { ALIGNMENT = 64 };
+
+/* Where each array lies after the block's first aligned byte; `end` is after the last. */
 typedef struct layout {
-  size_t solver, q, v, work, before, owed, ahead, middle, between, drive, scratch, calls, bytes;
+  size_t solver, q, v, work, before, owed, ahead, middle, between, drive, scratch, calls, end;
 } layout;
 
 static size_t reserve(size_t *end, size_t bytes) {
-  enum { ALIGNMENT = 64 };
   const size_t begin = *end;
   *end = (begin + bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
   return begin;
@@ -42,36 +44,46 @@ static layout lay_out(const msr_plan *plan) {
   l.drive = reserve(&end, plan->driven ? vector : 0);
   l.scratch = reserve(&end, plan->scratch_bytes);
   l.calls = reserve(&end, plan->n_effects * sizeof(uint64_t));
-  l.bytes = end;
+  l.end = end;
   return l;
 }
 
-size_t msri_state_bytes(const msr_plan *plan) { return lay_out(plan).bytes; }
+static size_t block_bytes(const layout *l) { return l->end + ALIGNMENT; }
+
+size_t msri_state_bytes(const msr_plan *plan) {
+  const layout l = lay_out(plan);
+  return block_bytes(&l);
+}
+
+static char *first_aligned(char *block) {
+  return block + (ALIGNMENT - (uintptr_t)block % ALIGNMENT) % ALIGNMENT;
+}
 
 msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *err) {
   const layout l = lay_out(plan);
-  char *block = msri_alloc(1, l.bytes, "a state", err);
+  char *block = msri_alloc(1, block_bytes(&l), "a state", err);
   if (!block) return MSR_ENOMEM;
+  char *arrays = first_aligned(block);
   msr_state *made = (void *)block;
   *made = (msr_state){
       .plan = plan,
-      .q = (void *)(block + l.q),
-      .v = (void *)(block + l.v),
-      .work = {.vector = (void *)(block + l.work)},
-      .before = (void *)(block + l.before),
-      .owed = msri_plan_settles(plan) ? (void *)(block + l.owed) : NULL,
-      .ahead = (void *)(block + l.ahead),
-      .middle = (void *)(block + l.middle),
-      .between = (void *)(block + l.between),
-      .drive = (void *)(block + l.drive),
-      .scratch = block + l.scratch,
-      .calls = (void *)(block + l.calls),
+      .q = (void *)(arrays + l.q),
+      .v = (void *)(arrays + l.v),
+      .work = {.vector = (void *)(arrays + l.work)},
+      .before = (void *)(arrays + l.before),
+      .owed = msri_plan_settles(plan) ? (void *)(arrays + l.owed) : NULL,
+      .ahead = (void *)(arrays + l.ahead),
+      .middle = (void *)(arrays + l.middle),
+      .between = (void *)(arrays + l.between),
+      .drive = (void *)(arrays + l.drive),
+      .scratch = arrays + l.scratch,
+      .calls = (void *)(arrays + l.calls),
   };
   const size_t n = plan->figures.masses;
   msri_plan_start(plan, made->q, made->q + n, made->v, made->v + n);
   if (plan->graph) {
     const msr_view start = msr_state_view(made);
-    made->stiffness = msri_stiffness_place(plan->graph, &start, block + l.solver);
+    made->stiffness = msri_stiffness_place(plan->graph, &start, arrays + l.solver);
   }
   const msr_integrator *integrator = plan->figures.integrator;
   if (integrator->open) {
@@ -105,7 +117,7 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
   to->work.steps = from->work.steps;
   to->frames = from->frames;
   to->guard = from->guard;
-  memcpy((char *)to + l.q, (const char *)from + l.q, l.bytes - l.q);
+  memcpy(to->q, from->q, l.end - l.q);
 }
 
 void msri_state_touched(msr_state *state) {
