@@ -41,7 +41,9 @@ double largest_distance(const double *q, const double *r);
  * elsewhere. */
 double clock_now(bool elsewhere);
 
-void *need(size_t count, size_t size); /* zeroed; ends the program if there is none */
+/* Zeroed, at the beginning of a line of the cache; ends the program if there is none. */
+void *need(size_t count, size_t size);
+
 /* Ends the program with a line on stderr. */
 void bench_fail(const char *what, ...) __attribute__((format(printf, 1, 2), noreturn));
 

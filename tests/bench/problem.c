@@ -30,9 +30,11 @@ void bench_fail(const char *what, ...) {
 }
 
 void *need(size_t count, size_t size) {
-  void *block = calloc(count, size);
+  enum { LINE = 64 };
+  const size_t bytes = (count * size + LINE - 1) / LINE * LINE;
+  void *block = aligned_alloc(LINE, bytes);
   if (!block) bench_fail("out of memory");
-  return block;
+  return memset(block, 0, bytes);
 }
 
 static msr_scene *block(double k) {
