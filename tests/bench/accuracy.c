@@ -185,7 +185,7 @@ static void compare_on_smooth(void) {
   static const double errors[] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10};
   static table t;
   problem p;
-  problem_create(&p, DEFORMED, 1500, 1);
+  problem_create(&p, DEFORMED, 1500, 1.2);
   printf("== A free block of 20 x 20 masses, deformed by four waves of up to 0.01 px: k 1500, "
          "m 0.1, T 1 s\n");
   double *truth = find_truth(&p, 2000, 1e-14);
