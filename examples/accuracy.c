@@ -43,9 +43,10 @@ int main(void) {
     printf(p[i].stable ? ": error %.0e px in %.3f ms%s\n" : ": unstable\n", p[i].max,
            1000 * p[i].seconds, p[i].front ? " *" : "");
   }
-  for (double error = 1; error > 1e-5; error /= 100) {
-    const msr_accuracy_point *best = msr_accuracy_cheapest(study, error);
-    if (best) printf("%g px: %s\n", error, best->integrator->name);
+  static const double errors[] = {1, 1e-2, 1e-4};
+  for (size_t i = 0; i < sizeof errors / sizeof *errors; i++) {
+    const msr_accuracy_point *best = msr_accuracy_cheapest(study, errors[i]);
+    if (best) printf("%g px: %s\n", errors[i], best->integrator->name);
   }
   msr_accuracy_free(study);
   msr_scene_free(scene);
