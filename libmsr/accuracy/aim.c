@@ -82,16 +82,16 @@ static bool worthwhile(const msri_aim *aim, double r) {
   return !(aim->passed > 0) || pow(r / aim->passed, aim->growth) <= worth;
 }
 
-void msri_aim_next(msri_aim *aim, const msri_measured *m, double wanted) {
+void msri_aim_next(msri_aim *aim, const msri_measured *m, double wanted, bool good) {
   const double error = final_error(m);
-  if (m->point.stable && m->point.max <= wanted)
+  if (good)
     aim->passed = aim->r;
   else
     aim->failed = aim->r;
   const double r = bracket(aim, foretell(aim, error, wanted));
   aim->tries++;
   aim->done = !worthwhile(aim, r);
-  aim->cost = m->cost / msri_max(m->share, 1e-9) * pow(r / aim->r, aim->growth);
+  aim->cost = m->cost * pow(r / aim->r, aim->growth);
   aim->last_r = aim->r;
   aim->last_error = error;
   aim->r = r;

@@ -27,7 +27,7 @@ msr_status msri_aim_begin(const msri_setting *setting, const msr_integrator *int
 
 msr_plan_options msri_aim_options(const msri_setting *setting, const msri_aim *aim);
 
-/* What follows a run that should have an error of at most `wanted`. */
-void msri_aim_next(msri_aim *aim, const msri_measured *measured, double wanted);
+/* What follows a run that should have an error of at most `wanted`; was it good enough? */
+void msri_aim_next(msri_aim *aim, const msri_measured *measured, double wanted, bool good);
 
 #endif

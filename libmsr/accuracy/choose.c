@@ -23,6 +23,7 @@
 static const msri_setting_defaults usual = {10, 500, 1.1};
 static const double reference_share = 0.5; /* of it */
 static const double own_share = 0.1;       /* of the error, that the reference may have */
+static const double most_of_it = 0.8;      /* of the time up to where the references part */
 static const double trials = 60;           /* work of a choice over that of Verlet's largest step */
 static const double in_question = 4;       /* work of a method that may yet be the best, over it */
 
@@ -77,6 +78,15 @@ static msri_aim *shortest(choosing *c) {
   return least;
 }
 
+/* As accurate as wanted up to the horizon; or, where the two references part, for most of the time
+ * up to there: in chaos the last bit of it would cost as much again and again. */
+static bool is_good(const choosing *c, const msri_measured *m) {
+  const uint64_t *iteration = c->setting.iteration;
+  if (m->good == c->reference.n) return true;
+  if (m->good == 0 || !c->reference.parted || !m->sound) return false;
+  return (double)iteration[m->good - 1] >= most_of_it * (double)iteration[c->reference.n - 1];
+}
+
 static msr_status try(choosing *c, msri_aim *aim, msr_error *err) {
   const bool any = c->best.point.integrator != NULL;
   const msri_limits limits = {msri_min(100 * c->error, c->setting.far), c->wanted,
@@ -90,9 +100,10 @@ static msr_status try(choosing *c, msri_aim *aim, msr_error *err) {
   if (c->setting.watch.over) return MSR_OK;
   aim->done = status == MSR_EUSAGE;
   if (status != MSR_OK) return aim->done ? MSR_OK : status;
-  const bool good = m.point.stable && m.point.max <= c->wanted;
-  if (good) c->best = m; /* or it would have been ended at the cost of the best before */
-  msri_aim_next(aim, &m, c->wanted);
+  const bool good = is_good(c, &m);
+  m.cost /= msri_max(m.share, 1e-9);
+  if (good && (!any || m.cost < c->best.cost)) c->best = m;
+  msri_aim_next(aim, &m, c->wanted, good);
   return MSR_OK;
 }
 
@@ -119,15 +130,14 @@ static size_t instants_within(const choosing *c, double share) {
   return n;
 }
 
-/* When time is up before a run was as accurate as asked: the one that was for longest, unless more
- * is known already. */
-static msr_status settle(const choosing *c, finding *found) {
-  const msri_measured *m = &c->longest;
-  if (m->good <= found->n) return MSR_OK;
-  *found = (finding){*m, m->good, msri_reference_error(&c->reference), .late = true};
+/* The best or, when time was up before there was one, the run that was good for longest. */
+static void settle(const choosing *c, finding *found) {
+  const bool any = c->best.point.integrator != NULL;
+  const msri_measured *m = any ? &c->best : &c->longest;
+  if (m->good == 0 || (!any && (!c->setting.watch.over || m->good <= found->n))) return;
+  *found = (finding){*m, m->good, msri_reference_error(&c->reference), c->reference.parted, !any};
   found->best.point.max = m->good_error;
   found->best.point.seconds *= share_at(c, m->good) / share_at(c, c->reference.n);
-  return MSR_OK;
 }
 
 /* One stage, up to setting.n and with an error of at most `share` of what is asked for there; or up
@@ -144,11 +154,8 @@ static msr_status stage(choosing *c, double share, finding *found, msr_error *er
   c->best = c->longest = (msri_measured){0};
   if (!c->aim) status = begin_aims(c, err);
   if (status == MSR_OK) status = try_all(c, err);
-  if (status == MSR_OK && !c->best.point.integrator && c->setting.watch.over)
-    return settle(c, found);
-  if (status != MSR_OK || !c->best.point.integrator) return status;
-  *found = (finding){c->best, c->reference.n, msri_reference_error(&c->reference), parted, false};
-  return MSR_OK;
+  if (status == MSR_OK) settle(c, found);
+  return status;
 }
 
 /* Methods whose work isn't far above the best's go on, for a run `times` as long. */
@@ -231,10 +238,10 @@ static void explain(const choosing *c, const finding *f, msr_accuracy_choice *ch
   else
     msri_format(step, sizeof step, "%llu substep%s", (unsigned long long)p->substeps,
                 p->substeps > 1 ? "s" : "");
-  if (f->parted)
-    msri_format(how, sizeof how, ", up to %.4g s: beyond, no reference is that sure", tried);
-  else if (f->late)
+  if (f->late)
     msri_format(how, sizeof how, ", up to %.4g s of %.4g s, when time was up", tried, whole);
+  else if (f->parted)
+    msri_format(how, sizeof how, ", up to %.4g s: beyond, none can be promised", tried);
   else if (f->n < c->all && c->setting.contacts)
     msri_format(how, sizeof how, ", tried up to %.4g s of %.4g s", tried, whole);
   else if (f->n < c->all)

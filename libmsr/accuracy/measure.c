@@ -130,6 +130,7 @@ static msr_status run(course *c, const msri_limits *limits, msri_measured *measu
   if (status == MSR_OK) fill(c, point);
   measured->cost = msri_trial_cost(c->trial.state);
   measured->error = c->max;
+  measured->sound = status == MSR_OK || (isfinite(c->max) && c->max > limits->error);
   measured->early = c->early;
   measured->good = c->good;
   measured->good_error = c->good_error;

@@ -27,6 +27,7 @@ typedef struct msri_measured {
   double cost;              /* as msri_trial_cost counts it */
   double share;             /* of the time up to the horizon that was run */
   double error;             /* largest in that time, also if the run was ended */
+  bool sound;               /* it came to its end, or its error ended it: it didn't explode */
   double early;             /* in the first quarter of the time up to the horizon */
   size_t good;              /* instants up to which it is as wanted, */
   double good_error;        /* and the largest there */
