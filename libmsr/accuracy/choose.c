@@ -12,8 +12,7 @@
  * Costs are counted in calls of forces, and planned by the time that they take on a common machine,
  * so that the choice is the same again, while neither the budget nor the reference's part of it
  * runs out. */
-#include "accuracy/aim.h"
-#include "accuracy/ladder.h"
+#include "accuracy/pilot.h"
 
 #include "base/number.h"
 
@@ -23,20 +22,8 @@
 static const msri_setting_defaults usual = {10, 500, 1.1};
 static const double reference_share = 0.5; /* of it */
 static const double own_share = 0.1;       /* of the error, that the reference may have */
-static const double most_of_it = 0.8;      /* of the time up to where the references part */
 static const double trials = 60;           /* work of a choice over that of Verlet's largest step */
 static const double in_question = 4;       /* work of a method that may yet be the best, over it */
-
-typedef struct choosing {
-  msri_setting setting;
-  msri_reference reference;
-  size_t all;            /* instants of the whole; setting.n are those of the stage under way */
-  double error;          /* asked for */
-  double wanted;         /* of a run, in the stage under way */
-  msri_aim *aim;         /* [setting.n_methods] */
-  msri_measured best;    /* as accurate as asked; integrator NULL: none yet */
-  msri_measured longest; /* for the longest time, the same */
-} choosing;
 
 /* What the best is known from. */
 typedef struct finding {
@@ -47,91 +34,22 @@ typedef struct finding {
   bool late;   /* time was up */
 } finding;
 
-/* ---- Methods */
-
-static msr_status begin_aims(choosing *c, msr_error *err) {
-  const uint64_t iterations = c->setting.iteration[c->reference.n - 1];
-  const bool careful = c->reference.n < c->all;
-  const bool given = c->setting.watch.options->n_integrators != 0;
-  const size_t n = c->setting.n_methods;
-  msr_status status = MSR_OK;
-  c->aim = msri_alloc(n, sizeof *c->aim, "the methods", err);
-  if (!c->aim) return MSR_ENOMEM;
-  for (size_t i = 0; i < n && status == MSR_OK; i++)
-    status = msri_aim_begin(&c->setting, c->setting.method[i], iterations, careful, c->wanted,
-                            &c->aim[i], err);
-  /* Beyond what was tried a method of order 1 may heat, above all at supports. */
-  for (size_t i = 0; i < n && careful && !given; i++)
-    c->aim[i].done |= msri_setting_order(&c->setting, c->setting.method[i]) < 2;
-  return status;
-}
-
-/* The aim whose next run is the shortest, if it is shorter than the best. */
-static msri_aim *shortest(choosing *c) {
-  msri_aim *least = NULL;
-  double most = c->best.point.integrator ? c->best.cost : HUGE_VAL;
-  for (size_t i = 0; i < c->setting.n_methods; i++) {
-    if (c->aim[i].done || !(c->aim[i].cost < most)) continue;
-    least = &c->aim[i];
-    most = least->cost;
-  }
-  return least;
-}
-
-/* As accurate as wanted up to the horizon; or, where the two references part, for most of the time
- * up to there: in chaos the last bit of it would cost as much again and again. */
-static bool is_good(const choosing *c, const msri_measured *m) {
-  const uint64_t *iteration = c->setting.iteration;
-  if (m->good == c->reference.n) return true;
-  if (m->good == 0 || !c->reference.parted || !m->sound) return false;
-  return (double)iteration[m->good - 1] >= most_of_it * (double)iteration[c->reference.n - 1];
-}
-
-static msr_status try(choosing *c, msri_aim *aim, msr_error *err) {
-  const bool any = c->best.point.integrator != NULL;
-  const msri_limits limits = {msri_min(100 * c->error, c->setting.far), c->wanted,
-                              any ? c->best.cost : HUGE_VAL};
-  const msr_plan_options options = msri_aim_options(&c->setting, aim);
-  msri_measured m;
-  msri_watch_next(&c->setting.watch, 1, "choosing: %s", aim->integrator->name);
-  const msr_status status =
-      msri_measure(&c->setting, &c->reference, NULL, &options, &limits, &m, err);
-  if (m.good > c->longest.good) c->longest = m;
-  if (c->setting.watch.over) return MSR_OK;
-  aim->done = status == MSR_EUSAGE;
-  if (status != MSR_OK) return aim->done ? MSR_OK : status;
-  const bool good = is_good(c, &m);
-  m.cost /= msri_max(m.share, 1e-9);
-  if (good && (!any || m.cost < c->best.cost)) c->best = m;
-  msri_aim_next(aim, &m, c->wanted, good);
-  return MSR_OK;
-}
-
-static msr_status try_all(choosing *c, msr_error *err) {
-  msr_status status = MSR_OK;
-  for (msri_aim *next = shortest(c); next && status == MSR_OK; next = shortest(c)) {
-    status = try(c, next, err);
-    if (c->setting.watch.over) break;
-  }
-  return status;
-}
-
 /* ---- Stages */
 
 /* Time of an instant over that of the whole run. */
-static double share_at(const choosing *c, size_t n) {
+static double share_at(const msri_pilot *c, size_t n) {
   return (double)c->setting.iteration[n - 1] / (double)c->setting.iteration[c->all - 1];
 }
 
 /* The last instant within a share of the run; the first at least. */
-static size_t instants_within(const choosing *c, double share) {
+static size_t instants_within(const msri_pilot *c, double share) {
   size_t n = c->all;
   while (n > 1 && share_at(c, n) > share) n--;
   return n;
 }
 
 /* The best or, when time was up before there was one, the run that was good for longest. */
-static void settle(const choosing *c, finding *found) {
+static void settle(const msri_pilot *c, finding *found) {
   const bool any = c->best.point.integrator != NULL;
   const msri_measured *m = any ? &c->best : &c->longest;
   if (m->good == 0 || (!any && (!c->setting.watch.over || m->good <= found->n))) return;
@@ -142,7 +60,7 @@ static void settle(const choosing *c, finding *found) {
 
 /* One stage, up to setting.n and with an error of at most `share` of what is asked for there; or up
  * to the horizon, if it is before. */
-static msr_status stage(choosing *c, double share, finding *found, msr_error *err) {
+static msr_status stage(msri_pilot *c, double share, finding *found, msr_error *err) {
   const double own = own_share * c->error;
   const msri_reference_goal goal = {own, share * own, 0.25, reference_share};
   msri_reference_clear(&c->reference);
@@ -152,14 +70,13 @@ static msr_status stage(choosing *c, double share, finding *found, msr_error *er
   const double sure = msri_reference_error(&c->reference) / own_share;
   c->wanted = (parted ? c->error : msri_max(share * c->error, sure)) - sure * own_share;
   c->best = c->longest = (msri_measured){0};
-  if (!c->aim) status = begin_aims(c, err);
-  if (status == MSR_OK) status = try_all(c, err);
+  status = msri_pilot_run(c, err);
   if (status == MSR_OK) settle(c, found);
   return status;
 }
 
 /* Methods whose work isn't far above the best's go on, for a run `times` as long. */
-static void go_on(choosing *c, double times) {
+static void go_on(msri_pilot *c, double times) {
   const double best = c->best.cost;
   for (size_t i = 0; i < c->setting.n_methods; i++) {
     msri_aim *a = &c->aim[i];
@@ -184,7 +101,7 @@ static double growth_of(const finding *f) {
 }
 
 /* How far the whole run is beyond the first stage, and how far the second can go. */
-static size_t second_length(const choosing *c, const finding *f) {
+static size_t second_length(const msri_pilot *c, const finding *f) {
   const double budget = 0.8 * c->setting.watch.budget;
   const double spent = msri_setting_seconds(&c->setting, c->setting.cost);
   const double cost = c->reference.cost + in_question * f->best.cost;
@@ -193,7 +110,7 @@ static size_t second_length(const choosing *c, const finding *f) {
   return share > 0 ? instants_within(c, share) : 1;
 }
 
-static double first_share(const choosing *c) {
+static double first_share(const msri_pilot *c) {
   const double steps = msri_setting_verlet(&c->setting, c->setting.iteration[c->all - 1]);
   const double share =
       c->setting.watch.budget / 4 / msri_setting_seconds(&c->setting, trials * steps);
@@ -202,11 +119,11 @@ static double first_share(const choosing *c) {
 
 /* Of the error asked for, what may be there after `n` instants. Supports let nothing be said of
  * what follows: then all of it. */
-static double part(const choosing *c, size_t n, double growth) {
+static double part(const msri_pilot *c, size_t n, double growth) {
   return c->setting.contacts ? 1 : pow(share_at(c, n), growth);
 }
 
-static msr_status choose(choosing *c, finding *found, msr_error *err) {
+static msr_status choose(msri_pilot *c, finding *found, msr_error *err) {
   c->setting.n = instants_within(c, first_share(c));
   msr_status status = stage(c, part(c, c->setting.n, 1.5), found, err);
   if (status != MSR_OK || found->n == 0 || found->parted || found->late || found->n == c->all)
@@ -225,11 +142,11 @@ static msr_status choose(choosing *c, finding *found, msr_error *err) {
 /* ---- The choice */
 
 /* The largest error at the end of the run, if it goes on growing as it did. */
-static double foretold(const choosing *c, const finding *f) {
+static double foretold(const msri_pilot *c, const finding *f) {
   return (f->best.point.max + f->own) * pow(share_at(c, f->n), -growth_of(f));
 }
 
-static void explain(const choosing *c, const finding *f, msr_accuracy_choice *choice) {
+static void explain(const msri_pilot *c, const finding *f, msr_accuracy_choice *choice) {
   const msr_accuracy_point *p = &f->best.point;
   const double whole = c->setting.until, tried = whole * share_at(c, f->n);
   char step[64], how[128] = "";
@@ -252,7 +169,7 @@ static void explain(const choosing *c, const finding *f, msr_accuracy_choice *ch
               p->integrator->name, step, c->error, choice->error, how);
 }
 
-static msr_status conclude(const choosing *c, const finding *f, msr_accuracy_choice *choice,
+static msr_status conclude(const msri_pilot *c, const finding *f, msr_accuracy_choice *choice,
                            msr_error *err) {
   const msr_accuracy_point *p = &f->best.point;
   if (f->n == 0 && c->setting.watch.over)
@@ -280,7 +197,7 @@ msr_status msr_accuracy_choose(const msr_scene *scene, double error,
   if (!options) options = &defaults;
   if (!(error > 0 && isfinite(error)))
     return msri_fail(err, MSR_EUSAGE, "the error must be a number above 0, not %g", error);
-  choosing c = {.error = error};
+  msri_pilot c = {.error = error};
   msr_error said = {MSR_OK, ""}; /* of pilots that failed, too */
   finding found = {.n = 0};
   msr_status status = msri_setting_open(&c.setting, scene, options, &usual, err);
