@@ -15,19 +15,28 @@
 
 typedef struct splitting {
   int drifts;
-  bool symmetric;      /* both rows read the same backwards: the first half of each will do */
+  bool symmetric;      /* both rows read the same backwards: what is before the middle will do */
   const double *drift; /* [drifts], in units of h */
   const double *kick;  /* [drifts + 1]; NULL: a composition of Verlet steps of drift[] h */
 } splitting;
 
+/* Number j of a row of `count`. Of one that reads the same backwards the one in the middle, or
+ * both, make up the sum of 1. */
+static double coefficient(bool symmetric, const double *row, int count, int j) {
+  if (!symmetric) return row[j];
+  const int mirror = count - 1 - j, outer = j < mirror ? j : mirror, middle = (count - 1) / 2;
+  if (outer < middle) return row[outer];
+  double sum = 0;
+  for (int i = 0; i < middle; i++) sum += row[i];
+  return count % 2 ? 1 - 2 * sum : 0.5 - sum;
+}
+
 static double drift_of(const splitting *row, int j) {
-  const int mirror = row->drifts - 1 - j;
-  return row->drift[row->symmetric && j > mirror ? mirror : j];
+  return coefficient(row->symmetric, row->drift, row->drifts, j);
 }
 
 static double kick_of(const splitting *row, int j) {
-  const int mirror = row->drifts - j;
-  return row->kick[row->symmetric && j > mirror ? mirror : j];
+  return coefficient(row->symmetric, row->kick, row->drifts + 1, j);
 }
 
 /* What happens between two drifts, in units of h; a half flow backward, then one forward. */
@@ -124,52 +133,26 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
   return status;
 }
 
-/* ---- Coefficients, up to the middle, which makes up the sum of 1 */
+/* ---- Coefficients; of symmetric rows, those before the middle */
 
-static const double whole[] = {1}, euler_kick[] = {1, 0};
-static const double pefrl_drift[] = {0.1786178958448091, -0.06626458266981849,
-                                     1 - 2 * (0.1786178958448091 - 0.06626458266981849)};
-static const double pefrl_kick[] = {0, 0.5 + 0.2123418310626054, -0.2123418310626054};
-static const double srkn4_drift[] = {0.245298957184271, 0.604872665711080,
-                                     0.5 - (0.245298957184271 + 0.604872665711080)};
-static const double srkn4_kick[] = {
-    0.0829844064174052, 0.396309801498368, -0.0390563049223486,
-    1 - 2 * (0.0829844064174052 + 0.396309801498368 - 0.0390563049223486)};
-static const double srkn6_drift[] = {0.123229775946271,
-                                     0.290553797799558,
-                                     -0.127049212625417,
-                                     -0.246331761062075,
-                                     0.357208872795928,
-                                     1 - 2 * (0.123229775946271 + 0.290553797799558 -
-                                              0.127049212625417 - 0.246331761062075 +
-                                              0.357208872795928)};
-static const double srkn6_kick[] = {0.0414649985182624,
-                                    0.198128671918067,
-                                    -0.0400061921041533,
-                                    0.0752539843015807,
-                                    -0.0115113874206879,
-                                    0.5 - (0.0414649985182624 + 0.198128671918067 -
-                                           0.0400061921041533 + 0.0752539843015807 -
-                                           0.0115113874206879)};
-static const double kahan_li_6_drift[] = {
-    0.39216144400731413928, 0.33259913678935943860, -0.70624617255763935981, 0.08221359629355080023,
-    1 - 2 * (0.39216144400731413928 + 0.33259913678935943860 - 0.70624617255763935981 +
-             0.08221359629355080023)};
-static const double kahan_li_8_drift[] = {
-    0.13020248308889008088,
-    0.56116298177510838456,
-    -0.38947496264484728641,
-    0.15884190655515560090,
-    -0.39590389413323757734,
-    0.18453964097831570709,
-    0.25837438768632204729,
-    0.29501172360931029887,
-    1 - 2 * (0.13020248308889008088 + 0.56116298177510838456 - 0.38947496264484728641 +
-             0.15884190655515560090 - 0.39590389413323757734 + 0.18453964097831570709 +
-             0.25837438768632204729 + 0.29501172360931029887)};
+static const double euler_drift[] = {1}, euler_kick[] = {1, 0};
+static const double pefrl_drift[] = {0.1786178958448091, -0.06626458266981849};
+static const double pefrl_kick[] = {0, 0.5 + 0.2123418310626054};
+static const double srkn4_drift[] = {0.245298957184271, 0.604872665711080};
+static const double srkn4_kick[] = {0.0829844064174052, 0.396309801498368, -0.0390563049223486};
+static const double srkn6_drift[] = {0.123229775946271, 0.290553797799558, -0.127049212625417,
+                                     -0.246331761062075, 0.357208872795928};
+static const double srkn6_kick[] = {0.0414649985182624, 0.198128671918067, -0.0400061921041533,
+                                    0.0752539843015807, -0.0115113874206879};
+static const double kahan_li_6_drift[] = {0.39216144400731413928, 0.33259913678935943860,
+                                          -0.70624617255763935981, 0.08221359629355080023};
+static const double kahan_li_8_drift[] = {0.13020248308889008088,  0.56116298177510838456,
+                                          -0.38947496264484728641, 0.15884190655515560090,
+                                          -0.39590389413323757734, 0.18453964097831570709,
+                                          0.25837438768632204729,  0.29501172360931029887};
 
-static const splitting symplectic_euler = {1, false, whole, euler_kick};
-static const splitting verlet = {1, true, whole, NULL};
+static const splitting symplectic_euler = {1, false, euler_drift, euler_kick};
+static const splitting verlet = {1, true, NULL, NULL};
 static const splitting pefrl = {5, true, pefrl_drift, pefrl_kick};
 static const splitting srkn4 = {6, true, srkn4_drift, srkn4_kick};
 static const splitting srkn6 = {11, true, srkn6_drift, srkn6_kick};
