@@ -17,8 +17,8 @@ typedef struct tableau {
   double a[MOST_STAGES][MOST_STAGES], b[MOST_STAGES], c[MOST_STAGES];
 } tableau;
 
-/* Of k_j in the displacement of a row of weights w[stages]: sum of w_m a_mj. */
-static double twice(const tableau *row, const double *w, int j) {
+/* Weight of h^2 k_j in the displacement of a row w[stages] of the tableau: sum of w_m a_mj. */
+static double weight_of(const tableau *row, const double *w, int j) {
   double sum = 0;
   for (int m = j; m < row->stages; m++) sum += w[m] * row->a[m][j];
   return sum;
@@ -47,7 +47,7 @@ static msr_status solve_stage(const stages *s, int i, const msri_stage *at, msr_
   const double h = s->interval->h, own = row->a[i][i] * row->a[i][i] * h * h;
   double *d = s->k[i], *known = s->known;
   for (size_t m = 0; m < n; m++) known[m] = row->c[i] * h * at->v0[m];
-  for (int j = 0; j < i; j++) msri_add_scaled(n, h * h * twice(row, row->a[i], j), s->k[j], known);
+  for (int j = 0; j < i; j++) msri_add_scaled(n, h * h * weight_of(row, row->a[i], j), s->k[j], known);
   memcpy(d, known, n * sizeof *d);
   if (i > 0) msri_add_scaled(n, own, s->k[i - 1], d);
   msri_stage stage = *at;
@@ -73,7 +73,7 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
   if (status != MSR_OK) return status;
   msri_add_scaled(n, h, v, q);
   for (int j = 0; j < row->stages; j++) {
-    msri_add_scaled(n, h * h * twice(row, row->b, j), s.k[j], q);
+    msri_add_scaled(n, h * h * weight_of(row, row->b, j), s.k[j], q);
     msri_add_scaled(n, h * row->b[j], s.k[j], v);
   }
   return msri_damp(system, interval->end, h / 2, true, q, v);
