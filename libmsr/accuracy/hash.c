@@ -7,10 +7,10 @@
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
-/* FNV-1a, byte by byte; numbers go word by word. */
+/* Byte by byte; numbers go word by word. */
 static uint64_t add(uint64_t hash, const void *bytes, size_t size) {
   const unsigned char *byte = bytes;
-  for (size_t i = 0; i < size; i++) hash = (hash ^ byte[i]) * UINT64_C(0x100000001b3);
+  for (size_t i = 0; i < size; i++) hash = msri_hash(hash, byte[i]);
   return hash;
 }
 

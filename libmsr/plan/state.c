@@ -132,7 +132,7 @@ uint64_t msri_hash_words(uint64_t hash, const void *words, size_t n) {
   for (size_t i = 0; i < n; i++) {
     uint64_t word;
     memcpy(&word, (const char *)words + i * sizeof word, sizeof word);
-    hash = (hash ^ word) * UINT64_C(0x100000001b3);
+    hash = msri_hash(hash, word);
   }
   return hash;
 }

@@ -85,8 +85,11 @@ void msri_state_strike(msr_state *state);
 /* As msr_state_energy, without momentum and the longest spring. */
 msr_energy msri_state_energies(const msr_state *state);
 
-/* FNV-1a over 8-byte words, from a hash so far. */
+/* FNV-1a, from a hash so far: of one value, and of 8-byte words. */
 #define MSRI_HASH_START UINT64_C(0xcbf29ce484222325)
+static inline uint64_t msri_hash(uint64_t hash, uint64_t value) {
+  return (hash ^ value) * UINT64_C(0x100000001b3);
+}
 uint64_t msri_hash_words(uint64_t hash, const void *words, size_t n);
 
 /* Tells that q or v were changed from outside. */
