@@ -81,13 +81,6 @@ static msr_status reserve(const msri_setting *setting, msri_reference *r, msr_er
   return r->q && r->energy && r->gap ? MSR_OK : MSR_ENOMEM;
 }
 
-void msri_reference_clear(msri_reference *reference) {
-  free(reference->q);
-  free(reference->energy);
-  free(reference->gap);
-  *reference = (msri_reference){0};
-}
-
 msr_status msri_duel(msri_setting *setting, const msri_rivals *pair, int level, double parted,
                      msri_reference *reference, msr_error *err) {
   duel d = {.setting = setting, .made = reference, .parted = parted};

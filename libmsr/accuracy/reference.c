@@ -9,6 +9,7 @@
 #include "accuracy/duel.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* Whatever sees to supports is the same for all methods at the same step: there the two of a pair
  * have different ones. The first of each list is for a quick look. */
@@ -143,6 +144,13 @@ static msr_status try_all(quest *q, msr_error *err) {
   q->share *= 2;
   q->spent = 0;
   return many ? refine(q, &stiff, 0, HUGE_VAL, err) : quickly(q) ? MSR_OK : try(q, pair, 0, err);
+}
+
+void msri_reference_clear(msri_reference *reference) {
+  free(reference->q);
+  free(reference->energy);
+  free(reference->gap);
+  *reference = (msri_reference){0};
 }
 
 msr_status msri_reference_find(msri_setting *setting, const msri_reference_goal *goal,
