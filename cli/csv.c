@@ -18,15 +18,12 @@ static void print_origin(FILE *out, const study *st) {
 
 static void print_figures(FILE *out, const study *st) {
   const msr_accuracy_figures *f = &st->figures;
-  const msr_plan_options truth = {f->reference, f->reference_substeps, f->reference_atol, 0, 0};
-  const msr_plan_options witness = {f->witness, f->witness_substeps, f->witness_atol, 0, 0};
   fprintf(out, "# scene hash: %016" PRIx64 "\n# masses: %zu\n# springs: %zu\n", f->scene_hash,
           f->masses, f->springs);
   fprintf(out, "# until [s]: %s\n# horizon [s]: %s\n# instants: %" PRIu64 "\n",
           number_exact(f->until).text, number_exact(f->horizon).text, f->frames);
   fprintf(out, "# reference: %s\n# witness: %s\n# reference error [px]: %s\n",
-          method_name(&truth).text, method_name(&witness).text,
-          number_exact(f->reference_error).text);
+          reference_name(f).text, witness_name(f).text, number_exact(f->reference_error).text);
   fprintf(out, "# impacts: %s\n# complete: %s\n", st->contacts ? "located" : "none",
           f->complete ? "yes" : "no");
 }

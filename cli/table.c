@@ -28,12 +28,8 @@ static cell error(double value) {
 /* ---- Head */
 
 static void print_truth(FILE *out, const msr_accuracy_figures *f) {
-  const msr_plan_options truth = {
-      .integrator = f->reference, .substeps = f->reference_substeps, .atol = f->reference_atol};
-  const msr_plan_options witness = {
-      .integrator = f->witness, .substeps = f->witness_substeps, .atol = f->witness_atol};
-  fprintf(out, "reference   %s; within %.2g px of %s\n", method_name(&truth).text,
-          f->reference_error, method_name(&witness).text);
+  fprintf(out, "reference   %s; within %.2g px of %s\n", reference_name(f).text, f->reference_error,
+          witness_name(f).text);
 }
 
 static void print_time(FILE *out, const study *st) {

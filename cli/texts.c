@@ -24,6 +24,16 @@ method method_name(const msr_plan_options *options) {
   return m;
 }
 
+method reference_name(const msr_accuracy_figures *f) {
+  return method_name(&(msr_plan_options){
+      .integrator = f->reference, .substeps = f->reference_substeps, .atol = f->reference_atol});
+}
+
+method witness_name(const msr_accuracy_figures *f) {
+  return method_name(&(msr_plan_options){
+      .integrator = f->witness, .substeps = f->witness_substeps, .atol = f->witness_atol});
+}
+
 msr_plan_options method_of(const msr_accuracy_point *point) {
   return (msr_plan_options){
       .integrator = point->integrator, .substeps = point->substeps, .atol = point->atol};

@@ -18,6 +18,10 @@ typedef struct method {
 /* "verlet, 2 substeps"; of an adaptive one, its tolerance: "rk8pd, 2 substeps, tolerance 1e-08". */
 method method_name(const msr_plan_options *options);
 
+/* Likewise those that a study compared with. */
+method reference_name(const msr_accuracy_figures *figures);
+method witness_name(const msr_accuracy_figures *figures);
+
 /* What a point of a study was run with. */
 msr_plan_options method_of(const msr_accuracy_point *point);
 
