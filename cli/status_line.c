@@ -7,7 +7,7 @@
 
 enum { WIDTH = 78 };
 
-double clock_now(void) {
+double status_line_now(void) {
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
@@ -15,11 +15,11 @@ double clock_now(void) {
 
 void status_line_start(status_line *line, const settings *s) {
   line->shows = !s->quiet && isatty(STDERR_FILENO);
-  line->started = line->shown = clock_now();
+  line->started = line->shown = status_line_now();
 }
 
 bool status_line_due(status_line *line) {
-  const double time = line->shows ? clock_now() : 0;
+  const double time = line->shows ? status_line_now() : 0;
   if (!line->shows || time - line->shown < 0.2) return false;
   line->shown = time;
   return true;

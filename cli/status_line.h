@@ -10,7 +10,7 @@ typedef struct status_line {
 } status_line;
 
 /* Seconds of a clock that never jumps. */
-double clock_now(void);
+double status_line_now(void);
 
 void status_line_start(status_line *line, const settings *s);
 

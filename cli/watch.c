@@ -86,7 +86,7 @@ void watch_print_summary(const watch *w, const msr_state *state) {
   if (w->s->quiet) return;
   fprintf(stderr, "msr: %" PRIu64 " frame%s", w->frames, w->frames == 1 ? "" : "s");
   print_where(w);
-  const double took = clock_now() - w->line.started;
+  const double took = status_line_now() - w->line.started;
   fprintf(stderr, ": %.6g s simulated in ", w->plan.dt * (double)w->plan.iterations);
   fprintf(stderr, took < 10 ? "%.2g s" : "%.0f s", took);
   if (w->s->verbose) print_energy(w);
