@@ -48,12 +48,13 @@ static bool open_pipe(int ends[2]) {
 msr_status gnuplot_start(gnuplot *g, int out, msr_error *err) {
   int ends[2];
   if (!open_pipe(ends)) return cannot_start(errno, err);
-  const int number = spawn(&g->process, ends[0], out);
+  g->script = fdopen(ends[1], "w");
+  const int number = g->script ? spawn(&g->process, ends[0], out) : errno;
   close(ends[0]);
-  g->script = number ? NULL : fdopen(ends[1], "w");
-  if (!g->script) {
-    close(ends[1]);
-    return cannot_start(number ? number : errno, err);
+  if (number) {
+    if (g->script) fclose(g->script);
+    if (!g->script) close(ends[1]);
+    return cannot_start(number, err);
   }
   // If it ends before its script does, that is told by its status.
   const struct sigaction ignore = {.sa_handler = SIG_IGN};
