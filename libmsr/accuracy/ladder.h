@@ -7,7 +7,6 @@
 
 #define MSRI_COARSEST_ATOL 0.1 /* [px] */
 #define MSRI_FINEST_ATOL   0.5e-13
-#define MSRI_MOST_SUBSTEPS 1e9
 
 /* Options of an adaptive run. */
 msr_plan_options msri_ladder_tolerance(const msri_setting *setting,

@@ -172,13 +172,13 @@ msr_plan_options msri_setting_options(const msri_setting *setting, const msr_int
 msr_status msri_setting_fewest(const msri_setting *setting, const msr_integrator *integrator,
                                bool safe, uint64_t *substeps, msr_error *err) {
   const msr_plan_options one = {.integrator = integrator, .substeps = 1};
-  static const double most = 1e9;
   msr_plan *plan;
   const msr_status status = msr_plan_create(setting->scene, &one, &plan, err);
   if (status != MSR_OK) return status;
   const msr_plan_figures f = msr_plan_describe(plan);
   const double needed = ceil(f.dt / (safe ? f.safe_step : f.stable_step) * (1 - 1e-12));
-  *substeps = needed <= 1 || f.stable_step == 0 ? 1 : needed < most ? (uint64_t)needed : 0;
+  const bool one_will_do = needed <= 1 || f.stable_step == 0;
+  *substeps = one_will_do ? 1 : needed < MSRI_MOST_SUBSTEPS ? (uint64_t)needed : 0;
   msr_plan_free(plan);
   return MSR_OK;
 }

@@ -8,6 +8,9 @@
 #include "scene/scene.h"
 #include "solvers/graph.h"
 
+/* Of an iteration. */
+#define MSRI_MOST_SUBSTEPS 1e9
+
 /* A force that the scene calls for, compiled. */
 typedef struct msri_term {
   const msr_force *force;
