@@ -7,9 +7,7 @@
 #include <string.h>
 
 enum { WIDTH = 16, HEIGHT = 8, PIXELS = WIDTH * HEIGHT, FLOOR = PIXELS - WIDTH };
-
 static const char ball[] = "      ###            #####            ###"; /* three rows */
-
 static msr_error err;
 
 static void check(msr_status status) {
