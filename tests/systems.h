@@ -1,5 +1,5 @@
-/* systems.h - what the tests of integrators share: an oscillator, and lattices in motion with every
- * kind of force. */
+/* systems.h - what the tests of integrators share: an oscillator, a planet, and lattices in motion
+ * with every kind of force. */
 #ifndef TESTS_SYSTEMS_H
 #define TESTS_SYSTEMS_H
 
@@ -24,6 +24,17 @@ static inline msr_status oscillate(void *self, double t, const double *q, const 
   counted *c = self;
   c->calls++;
   a[0] = -c->omega * c->omega * q[0];
+  return MSR_OK;
+}
+
+/* ---- A planet */
+
+static inline msr_status fall_to_sun(void *self, double t, const double *q, const double *v,
+                                     double *a) {
+  (void)self, (void)t, (void)v;
+  const double r = hypot(q[0], q[1]);
+  a[0] = -q[0] / (r * r * r);
+  a[1] = -q[1] / (r * r * r);
   return MSR_OK;
 }
 

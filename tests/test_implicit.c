@@ -311,14 +311,6 @@ static void differences_do_without_a_solver(void **state) {
 
 /* ---- What can't be solved */
 
-static msr_status fall_to_sun(void *self, double t, const double *q, const double *v, double *a) {
-  (void)self, (void)t, (void)v;
-  const double r = hypot(q[0], q[1]);
-  a[0] = -q[0] / (r * r * r);
-  a[1] = -q[1] / (r * r * r);
-  return MSR_OK;
-}
-
 /* Backward Euler spirals in until no place solves its equation: told, and not stepped. */
 static void no_solution_is_told(void **state) {
   (void)state;

@@ -13,14 +13,6 @@ static msr_status swing(void *self, double t, const double *q, const double *v, 
   return MSR_OK;
 }
 
-static msr_status fall_to_sun(void *self, double t, const double *q, const double *v, double *a) {
-  (void)self, (void)t, (void)v;
-  const double r = hypot(q[0], q[1]);
-  a[0] = -q[0] / (r * r * r);
-  a[1] = -q[1] / (r * r * r);
-  return MSR_OK;
-}
-
 static msr_status shaken(void *self, double t, const double *q, const double *v, double *a) {
   (void)self, (void)v;
   a[0] = -q[0] + sin(2 * t);
