@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <nvector/nvector_serial.h>
+#include <stdbool.h>
 
 #define EACH(i, v) (sunindextype i = 0, length = NV_LENGTH_S(v); i < length; i++)
 
@@ -55,27 +56,26 @@ static void add_constant(N_Vector x, double a, N_Vector z) {
     EACH(i, z) r[i] = p[i] + a;
 }
 
-/* Sums are taken in four parts, so that they can be vectorised. */
-static double sum_of_products(N_Vector x, N_Vector y) {
+static inline double product_of(double p, double q, bool squared) {
+  return squared ? p * q * (p * q) : p * q;
+}
+
+/* In four parts, so that it can be vectorised. */
+static inline double sum_of(N_Vector x, N_Vector y, bool squared) {
   const double *p = NV_DATA_S(x), *q = NV_DATA_S(y);
   const sunindextype n = NV_LENGTH_S(x);
   double part[4] = {0};
   sunindextype i = 0;
   for (; i + 4 <= n; i += 4)
-    for (int k = 0; k < 4; k++) part[k] += p[i + k] * q[i + k];
-  for (; i < n; i++) part[0] += p[i] * q[i];
+    for (int k = 0; k < 4; k++) part[k] += product_of(p[i + k], q[i + k], squared);
+  for (; i < n; i++) part[0] += product_of(p[i], q[i], squared);
   return part[0] + part[1] + part[2] + part[3];
 }
 
+static double sum_of_products(N_Vector x, N_Vector y) { return sum_of(x, y, false); }
+
 static double mean_square_root(N_Vector x, N_Vector weight) {
-  const double *p = NV_DATA_S(x), *w = NV_DATA_S(weight);
-  const sunindextype n = NV_LENGTH_S(x);
-  double part[4] = {0};
-  sunindextype i = 0;
-  for (; i + 4 <= n; i += 4)
-    for (int k = 0; k < 4; k++) part[k] += p[i + k] * w[i + k] * (p[i + k] * w[i + k]);
-  for (; i < n; i++) part[0] += p[i] * w[i] * (p[i] * w[i]);
-  return sqrt((part[0] + part[1] + part[2] + part[3]) / (double)n);
+  return sqrt(sum_of(x, weight, true) / (double)NV_LENGTH_S(x));
 }
 
 /* z may be the first of the vectors, and is no other. */
