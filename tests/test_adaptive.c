@@ -95,7 +95,7 @@ static const struct orbit {
   double growth; /* of an error on the way, and how many there are */
   double finest; /* atol: finer ones drown in rounding */
 } orbits[] = {
-    {"Kepler", fall_to_sun, kepler, 10, 100, 1e-11},
+    {"Kepler", fall, kepler, 10, 100, 1e-11},
     {"Arenstorf", pull_of_two, arenstorf, period, 1e5, 1e-10},
 };
 
@@ -278,17 +278,20 @@ static void intervals_meet_exactly(void **state) {
 }
 
 /* Intervals that go on from the one before take the step that was found there: fewer evaluations
- * than of those that begin anew. And what is done backwards in time ends where it began. */
+ * than of those that begin anew, if only by a seventh where steps are as short as rkf45's. And what
+ * is done backwards in time ends where it began. A step is off by well below the tolerance, so that
+ * some 200 of them there, and as many back, are within 10 times that (measured: 3 and 5 times). */
 static void check_going_on(const msr_integrator *integrator) {
   watch *w = &seen;
   *w = (watch){.omega = 1};
   const msr_system system = {.n = 1, .self = w, .acceleration = swing, .atol = 1e-9};
+  const double most = 10 * system.atol;
   double q = 1, v = 0;
   must(msr_integrate(integrator, &system, 0, 0.25, 40, &q, &v, &why));
   const uint64_t going_on = w->calls;
-  assert_true(hypot(q - cos(10), v + sin(10)) < 40e-9);
+  assert_true(hypot(q - cos(10), v + sin(10)) < most);
   must(msr_integrate(integrator, &system, 10, -10, 1, &q, &v, &why));
-  assert_true(hypot(q - 1, v) < 80e-9);
+  assert_true(hypot(q - 1, v) < most);
   w->calls = 0;
   for (int n = 0; n < 40; n++)
     must(msr_integrate(integrator, &system, 0.25 * n, 0.25, 1, &q, &v, &why));

@@ -204,7 +204,9 @@ static void differ(const msr_system *system, const double *q, const double *x, b
 }
 
 /* While it cuts nothing off, the matrix is the derivative of a, and twice that of the mean: solving
- * with what they make of x gives x. */
+ * with what they make of x gives x. Of x, differ() is off by e^2 = 1e-10 times c k / m, 1e-3 at
+ * most, for each of 10 springs at a mass, and a spring below a pixel times its length^-2: measured,
+ * 6e-13 at most. */
 static void the_matrix_is_the_derivative(void **state) {
   (void)state;
   uint64_t dice = 12;
@@ -221,7 +223,7 @@ static void the_matrix_is_the_derivative(void **state) {
       for (size_t i = 0; i < 2 * s.n; i++) y[i] = x[i] - (mean ? 2 : 1) * c * y[i];
       must(system.linearise(system.self, 0, mean ? s.x : NULL, s.x, s.x, c));
       must(system.solve(system.self, y, 1e-13, solution));
-      assert_true(distance(2 * s.n, x, solution) < 1e-11);
+      assert_true(distance(2 * s.n, x, solution) < 3e-12);
     }
     close_world(w);
   }
@@ -298,9 +300,11 @@ static void nonsense_is_told(void **state) {
   r[0] = NO_NUMBER;
   msri_stiffness_linearise(&w.state->stiffness, NULL, s.x, s.x, 1);
   assert_int_equal(msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x), MSR_EUNSTABLE);
-  for (r[0] = 1; r[0] > 0; r[0] *= 1e-50) { /* down to what is no normal number, and 0 */
+  /* The corner takes its row of 12 along, stretching it by some m / (c k) = 1e-4 times 12^2 / 3;
+   * r goes down to what is no normal number. */
+  for (r[0] = 1; r[0] > 0; r[0] *= 1e-31) {
     must(msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x));
-    assert_true(r[0] < DBL_MIN ? largest(2 * s.n, x) == 0 : x[0] > 1e-6 * r[0] && x[0] <= r[0]);
+    assert_true(r[0] < DBL_MIN ? largest(2 * s.n, x) == 0 : fabs(12 * x[0] / r[0] - 1) < 5e-3);
   }
   must(msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x));
   assert_true(largest(2 * s.n, x) == 0);
