@@ -399,10 +399,12 @@ static void what_cannot_be_is_refused(void **unused) {
   refused(scene, INFINITE, NULL, MSR_EUSAGE, "above 0");
   refused(scene, 1, &(msr_accuracy_options){.budget = -1}, MSR_EUSAGE, "budget");
   refused(empty, 1, NULL, MSR_EINPUT, "no mass");
-  refused(scene, 1e-17, NULL, MSR_EUNSTABLE, "no reference");
+  refused(scene, 1e-17, NULL, MSR_EUNSTABLE, "no two methods agree within 1e-18 px even at 0.01 s");
+  refused(scene, 1e-17, NULL, MSR_EUNSTABLE, "; ask for a larger error");
   refused(scene, 1, &(msr_accuracy_options){.poll = stop, .data = reference}, MSR_EIO, "stopped");
   refused(scene, 1, &(msr_accuracy_options){.poll = stop, .data = choosing}, MSR_EIO, "stopped");
-  refused(scene, 1, &(msr_accuracy_options){.budget = 1e-9}, MSR_EUNSTABLE, "budget");
+  refused(scene, 1, &(msr_accuracy_options){.budget = 1e-9}, MSR_EUNSTABLE,
+          "no two methods got to 0.01 s; raise the budget");
   msr_scene_free(scene);
   msr_scene_free(empty);
 }

@@ -58,11 +58,18 @@ static void settle(const msri_pilot *c, finding *found) {
   found->best.point.seconds *= share_at(c, m->good) / share_at(c, c->reference.n);
 }
 
+/* A caller who didn't give a budget may have no way to. */
+static const char *advice(const msri_pilot *c) {
+  return c->setting.watch.options->budget > 0
+             ? "raise the budget, or ask for a larger error"
+             : "ask for a larger error, or choose integrator and substeps yourself";
+}
+
 /* One stage, up to setting.n and with an error of at most `share` of what is asked for there; or up
  * to the horizon, if it is before. */
 static msr_status stage(msri_pilot *c, double share, finding *found, msr_error *err) {
   const double own = own_share * c->error;
-  const msri_reference_goal goal = {own, share * own, 0.25, reference_share};
+  const msri_reference_goal goal = {own, share * own, 0.25, reference_share, advice(c)};
   msri_reference_clear(&c->reference);
   msr_status status = msri_reference_find(&c->setting, &goal, &c->reference, err);
   if (status != MSR_OK) return status;
@@ -173,8 +180,8 @@ static msr_status conclude(const msri_pilot *c, const finding *f, msr_accuracy_c
                            msr_error *err) {
   const msr_accuracy_point *p = &f->best.point;
   if (f->n == 0 && c->setting.watch.over)
-    return msri_fail(err, MSR_EUNSTABLE, "nothing tried in %g s was within %g px; raise the budget",
-                     c->setting.watch.budget, c->error);
+    return msri_fail(err, MSR_EUNSTABLE, "nothing tried in %g s was within %g px; %s",
+                     c->setting.watch.budget, c->error, advice(c));
   if (f->n == 0)
     return msri_fail(err, MSR_EUNSTABLE,
                      "nothing tried is within %g px; ask for a larger error, or for less time",

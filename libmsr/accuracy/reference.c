@@ -165,8 +165,11 @@ msr_status msri_reference_find(msri_setting *setting, const msri_reference_goal 
     return msri_fail(err, setting->watch.status, "stopped before there was a reference");
   if (status != MSR_OK && status != MSR_EUNSTABLE)
     return msri_hand_on(err, status, &said, "%s", msr_status_text(status));
+  const double first = msri_setting_time(setting, 0);
+  if (setting->watch.over)
+    return msri_fail(err, MSR_EUNSTABLE, "no reference: in %g s no two methods got to %g s; %s",
+                     setting->watch.share * setting->watch.budget, first, goal->advice);
   return msri_fail(err, MSR_EUNSTABLE,
-                   "no reference: no two methods agree even at %g s; raise the budget, or lower "
-                   "TENSION_RESSORT or speeds",
-                   msri_setting_time(setting, 0));
+                   "no reference: no two methods agree within %g px even at %g s; %s", goal->parted,
+                   first, goal->advice);
 }

@@ -21,7 +21,8 @@ typedef struct msri_reference_goal {
   double enough; /* a smaller one needn't be refined [px] */
   double
       longer; /* share by which an early horizon must move for refining to pay; 0: any gain pays */
-  double share; /* of the budget */
+  double share;       /* of the budget */
+  const char *advice; /* to the user, if there is none */
 } msri_reference_goal;
 
 /* Finds the longest and finest reference. MSR_EUNSTABLE if two methods agree at no instant, or what

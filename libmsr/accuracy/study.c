@@ -163,7 +163,8 @@ static void describe(study *s) {
 }
 
 static msr_status run(study *s, msr_error *err) {
-  const msri_reference_goal goal = {parted, s->finest / 4, 0, reference_share};
+  const msri_reference_goal goal = {parted, s->finest / 4, 0, reference_share,
+                                    "raise the budget, or lower TENSION_RESSORT or speeds"};
   msr_status status = msri_reference_find(&s->setting, &goal, &s->reference, err);
   if (status == MSR_OK) status = msri_screens_open(&s->setting, &s->screens, err);
   if (status == MSR_OK) status = begin_ladders(s, err);
