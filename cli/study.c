@@ -92,10 +92,16 @@ void study_free(study *st) {
 
 static void tell_until(const study *st) {
   char text[128];
-  if (st->s->until <= 0 || st->s->until >= st->dt * (1 - 1e-9)) return;
-  snprintf(text, sizeof text, "--until %g is less than one DT: the first DT, %g s, is compared",
-           st->s->until, st->dt);
-  tell(st->s, "note", text);
+  const double until = st->s->until;
+  const bool early = until > 0 && until < st->dt * (1 - 1e-9);
+  const bool late = until > st->time * (1 + 1e-9);
+  if (early)
+    snprintf(text, sizeof text, "--until %g is less than one DT: the first DT, %g s, is compared",
+             until, st->dt);
+  if (late)
+    snprintf(text, sizeof text, "--until %g is after the scene's end: all of its %.6g s count",
+             until, st->time);
+  if (early || late) tell(st->s, "note", text);
 }
 
 /* Where it's so little that the table may mislead. */
