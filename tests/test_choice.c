@@ -209,7 +209,8 @@ static double least_cost(const msr_scene *scene, const msr_accuracy *study, doub
   return least;
 }
 
-/* `asked` for on a scene whose true motion is known. */
+/* `asked` for on a scene whose true motion is known. At most half is added to the least cost: 3
+ * substeps where 2 just do; the second cheapest of what was tried may cost 1.65 times the least. */
 static void check_choice(const struct scene *s, const msr_scene *scene, const msr_accuracy *study,
                          const track *truth, double asked) {
   const msr_accuracy_figures figures = msr_accuracy_describe(study);
@@ -222,7 +223,7 @@ static void check_choice(const struct scene *s, const msr_scene *scene, const ms
   if (error > asked || choice.error > asked)
     fail_msg("%s: error %g, estimated %g, asked for %g: %s", s->name, error, choice.error, asked,
              choice.reason);
-  if (t.cost > 2 * least)
+  if (t.cost > 1.55 * least)
     fail_msg("%s: cost %g, least %g, %g px: %s", s->name, t.cost, least, asked, choice.reason);
 }
 
