@@ -12,12 +12,10 @@
  *   derivative by x1 of k n n1^T + ..., n along x0 + x1; n takes the place of n1, for symmetry. */
 #include "solvers/stiffness.h"
 
-#include "base/machine.h"
+#include "forces/springs.h"
 
 #include <math.h>
 #include <string.h>
-
-enum { BLOCK = 256 };
 
 /* ---- Memory */
 
@@ -66,38 +64,35 @@ msri_stiffness msri_stiffness_place(const msri_graph *graph, const msr_view *s, 
 
 /* Where the matrix is asked for, as linearise() is given it. */
 typedef struct place {
-  const double *q0, *from, *q;
+  msr_view start, from, now; /* of which only x and y */
+  bool mean;
   double c;
 } place;
-
-/* The ends of springs, from xi, yi to xj, yj [count]. */
-typedef struct ends {
-  const double *xi, *yi, *xj, *yj;
-} ends;
 
 /* Springs [count] at the start (if `mean`), at the place before, and now. */
 typedef struct strands {
   size_t count;
-  ends start, from, now;
+  msri_ends start, from, now;
   const double *k, *L;
   double c, least;
 } strands;
 
 typedef struct blocks {
-  double xx[BLOCK], xy[BLOCK], yy[BLOCK];
+  double xx[MSRI_SPRINGS_BLOCK], xy[MSRI_SPRINGS_BLOCK], yy[MSRI_SPRINGS_BLOCK];
 } blocks;
 
 MSRI_INLINE double length(double x, double y) { return sqrt(x * x + y * y); }
 
 /* A spring's vector, its length (infinite if it has none), and the tension foretold. */
 typedef struct geometry {
-  double dx[BLOCK], dy[BLOCK], l[BLOCK], tension[BLOCK];
+  double dx[MSRI_SPRINGS_BLOCK], dy[MSRI_SPRINGS_BLOCK], l[MSRI_SPRINGS_BLOCK],
+      tension[MSRI_SPRINGS_BLOCK];
 } geometry;
 
 /* The sum of both vectors and lengths if `mean`. Divisors are chosen, not quotients, and nothing
  * after a quotient, or gcc would not vectorise. */
 MSRI_INLINE void measure(const strands *s, size_t stride, bool mean, geometry *restrict g) {
-  const ends start = s->start, from = s->from, now = s->now;
+  const msri_ends start = s->start, from = s->from, now = s->now;
   const double *k = s->k, *L = s->L, c = s->c, none = (double)INFINITY;
   for (size_t n = 0; n < s->count; n++) {
     double dx = now.xj[n] - now.xi[n], dy = now.yj[n] - now.yi[n], rest = L[n * stride];
@@ -153,61 +148,59 @@ static void stiffen_here(const strands *s, size_t stride, bool mean, blocks *b) 
   stiffen_any(s, stride, mean, b);
 }
 
-static ends ends_of(const double *q, size_t n, size_t i, size_t j) {
-  return (ends){q + i, q + n + i, q + j, q + n + j};
-}
-
 /* Springs first .. first + count - 1 of a run, which belong to the pairs given. */
 static void add_block(msri_stiffness *a, const place *at, const msr_run_of_springs *run,
                       size_t first, size_t count, const uint32_t *pair) {
   blocks b;
-  const size_t n = a->graph->n, i = run->first + first, j = i + run->offset;
+  const size_t i = run->first + first, j = i + run->offset;
   const strands s = {.count = count,
-                     .start = ends_of(at->q0 ? at->q0 : at->q, n, i, j),
-                     .from = ends_of(at->from, n, i, j),
-                     .now = ends_of(at->q, n, i, j),
+                     .start = msri_ends_of(&at->start, i, j),
+                     .from = msri_ends_of(&at->from, i, j),
+                     .now = msri_ends_of(&at->now, i, j),
                      .k = run->k + first * run->stride,
                      .L = run->L + first * run->stride,
                      .c = at->c,
                      .least = a->least};
-  stiffen_here(&s, run->stride, at->q0 != NULL, &b);
+  stiffen_here(&s, run->stride, at->mean, &b);
   for (size_t m = 0; m < count; m++) {
     msri_block *tie = &a->tie[pair[m]];
     *tie = msri_block_sum(*tie, (msri_block){b.xx[m], b.xy[m], b.yy[m]});
   }
 }
 
-static ends ends_of_anchor(const double *q, size_t n, const msr_anchor *a) {
-  return (ends){q + a->i, q + n + a->i, &a->x, &a->y};
-}
-
 static msri_block stiffness_of_anchor(const msri_stiffness *a, const place *at,
                                       const msr_anchor *to) {
   blocks b;
-  const size_t n = a->graph->n;
   const strands s = {.count = 1,
-                     .start = ends_of_anchor(at->q0 ? at->q0 : at->q, n, to),
-                     .from = ends_of_anchor(at->from, n, to),
-                     .now = ends_of_anchor(at->q, n, to),
+                     .start = msri_ends_of_anchor(&at->start, to),
+                     .from = msri_ends_of_anchor(&at->from, to),
+                     .now = msri_ends_of_anchor(&at->now, to),
                      .k = &to->k,
                      .L = &to->L,
                      .c = at->c,
                      .least = a->least};
-  stiffen_any(&s, 0, at->q0 != NULL, &b);
+  stiffen_any(&s, 0, at->mean, &b);
   return (msri_block){b.xx[0], b.xy[0], b.yy[0]};
 }
 
+static msr_view view_of(const double *q, size_t n) { return (msr_view){.x = q, .y = q + n}; }
+
 void msri_stiffness_linearise(msri_stiffness *a, const double *q0, const double *from,
                               const double *q, double c) {
-  const place at = {q0, from, q, c};
+  const size_t masses = a->graph->n;
+  const place at = {.start = view_of(q0 ? q0 : q, masses),
+                    .from = view_of(from, masses),
+                    .now = view_of(q, masses),
+                    .mean = q0 != NULL,
+                    .c = c};
   const msr_springs *springs = a->springs;
   const uint32_t *pair = a->graph->pair;
   memset(a->tie, 0, a->graph->pairs * sizeof *a->tie);
   for (size_t r = 0; r < springs->n_runs; r++) {
     const msr_run_of_springs *run = &springs->run[r];
-    for (size_t s = 0; s < run->count; s += BLOCK) {
+    for (size_t s = 0; s < run->count; s += MSRI_SPRINGS_BLOCK) {
       const size_t left = run->count - s;
-      add_block(a, &at, run, s, left < BLOCK ? left : BLOCK, pair + s);
+      add_block(a, &at, run, s, left < MSRI_SPRINGS_BLOCK ? left : MSRI_SPRINGS_BLOCK, pair + s);
     }
     pair += run->count;
   }
