@@ -291,8 +291,9 @@ typedef struct msr_system {
    * methods take differences of a. */
   msr_status (*solve)(void *self, const double *r, double tolerance, double *x);
   /* Adaptive methods take a step back if its estimated error is larger than atol + rtol |q| in q,
-   * or atol + rtol |v| in v with times in seconds, |.| being the largest coordinate. Both finite, 0
-   * or more, or MSR_EUSAGE; both 0: atol 1e-6. */
+   * or atol + rtol |v| in v with times in seconds, |.| being the largest coordinate. An rtol of 10
+   * DBL_EPSILON, for rounding, is the least, whatever is asked for. Both finite, 0 or more, or
+   * MSR_EUSAGE; both 0: atol 1e-6. */
   double atol, rtol;
 } msr_system;
 
