@@ -47,7 +47,8 @@ static msr_status solve_stage(const stages *s, int i, const msri_stage *at, msr_
   const double h = s->interval->h, own = row->a[i][i] * row->a[i][i] * h * h;
   double *d = s->k[i], *known = s->known;
   for (size_t m = 0; m < n; m++) known[m] = row->c[i] * h * at->v0[m];
-  for (int j = 0; j < i; j++) msri_add_scaled(n, h * h * weight_of(row, row->a[i], j), s->k[j], known);
+  for (int j = 0; j < i; j++)
+    msri_add_scaled(n, h * h * weight_of(row, row->a[i], j), s->k[j], known);
   memcpy(d, known, n * sizeof *d);
   if (i > 0) msri_add_scaled(n, own, s->k[i - 1], d);
   msri_stage stage = *at;
