@@ -366,8 +366,9 @@ static void what_is_known_longest_is_kept(void **unused) {
   msr_scene *scene = exacts[2].make();
   must(msr_scene_set_times(scene, 0.05, 100 * 1000, 100 * 1000, &why));
   msr_accuracy_choice choice;
-  must(msr_accuracy_choose(scene, 1e-3, &options, &choice, &why));
+  const msr_status status = msr_accuracy_choose(scene, 1e-3, &options, &choice, &why);
   if (s.stages == 2) {
+    must(status);
     assert_null(strstr(choice.reason, "when time was up"));
     assert_true(choice.horizon > 1000);
   }
