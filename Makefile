@@ -49,8 +49,11 @@ FUZZ_SRC := $(wildcard tests/fuzz/fuzz_*.c)
 EX_SRC   := $(wildcard examples/*.c)
 BITS_SRC := $(wildcard tests/bits/*.c)
 BENCH_SRC := $(wildcard tests/bench/*.c tests/bench/*.cc)
-SOURCES  := $(LIB_SRC) $(CLI_SRC) $(TEST_SRC) $(FUZZ_SRC) $(BITS_SRC) $(BENCH_SRC) $(EX_SRC)
-HEADERS  := $(wildcard include/*.h libmsr/*/*.h cli/*.h tests/*.h tests/fuzz/*.h tests/bench/*.h)
+HARD_SRC := $(wildcard tests/stability/*.c)
+SOURCES  := $(LIB_SRC) $(CLI_SRC) $(TEST_SRC) $(FUZZ_SRC) $(BITS_SRC) $(HARD_SRC) $(BENCH_SRC) \
+             $(EX_SRC)
+HEADERS  := $(wildcard include/*.h libmsr/*/*.h cli/*.h tests/*.h tests/fuzz/*.h tests/stability/*.h \
+             tests/bench/*.h)
 DOCS     := $(wildcard README.md LICENSE CHANGELOG.md docs/*.md docs/images/*.png include/*.h \
              examples/*.md examples/*.c examples/scenes/*)
 MAN      := $(wildcard docs/*.1)
@@ -133,6 +136,9 @@ $(TESTS): $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(BUILD)/libmsr.a
 	$(call show,LINK)$(LINK) -o $@ $(filter %.o,$^) $(BUILD)/libmsr.a \
 	  $(addprefix -Wl$(comma),$(wraps)) -lcmocka $(GSL_LIBS)
 
+# test_hard runs the cases of tests/stability.
+$(BUILD)/tests/test_hard: $(call object,$(HARD_SRC))
+
 # test_corpus runs every fuzzer on its corpus: there the entry of fuzz_x.c is called fuzz_x.
 $(BUILD)/tests/test_corpus: $(call object,$(FUZZ_SRC))
 rename = -DLLVMFuzzerTestOneInput=$(*F)
@@ -212,6 +218,17 @@ run-fuzzers: $(FUZZERS)
 	  $(BUILD)/fuzz_$$fuzzer -max_total_time=$(SECONDS) -timeout=10 -print_final_stats=1 \
 	    -artifact_prefix=$(BUILD)/$$fuzzer- $(BUILD)/corpus/$$fuzzer || exit; \
 	done
+
+# ---- Stability -----------------------------------------------------------------------------------
+
+## stability CASES=limit: hard cases, as a table; all of them (the default) take a while
+CASES =
+stability: $(BUILD)/tests/test_hard
+	@$< long '$(CASES)'
+
+## mutations: takes each protection out of a copy of the library and sees which hard case fails
+mutations: all
+	@BUILD='$(abspath $(BUILD))' sh tests/stability/mutations.sh
 
 # ---- Benchmarks ----------------------------------------------------------------------------------
 
@@ -311,7 +328,7 @@ help:
 
 .PHONY: all examples everything deps demo test check check-gcc check-clang check-san \
         check-valgrind check-tidy check-cppcheck check-format format coverage fuzz run-fuzzers \
-        bench-accuracy report figures install uninstall clean help
+        stability mutations bench-accuracy report figures install uninstall clean help
 FORCE:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(call object,$(SOURCES)))

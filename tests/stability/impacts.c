@@ -1,0 +1,106 @@
+/* impacts.c - impacts at 1 to 1e6 px/s against walls of one pixel, corners and wedges, and stacks
+ * at rest for a million steps. */
+#include "suite.h"
+
+#include <stdio.h>
+
+static const char wall[] = "....................\n"
+                           "..............#.....\n"
+                           "..............#.....\n"
+                           "...ooooo......#.....\n"
+                           "...ooooo......#.....\n"
+                           "...ooooo......#.....\n"
+                           "...ooooo......#.....\n"
+                           "..............#.....\n"
+                           "..............#.....\n"
+                           "....................\n";
+static const char corner[] = "####################\n"
+                             "#..................#\n"
+                             "#..................#\n"
+                             "#..ooooo...........#\n"
+                             "#..ooooo...........#\n"
+                             "#..ooooo...........#\n"
+                             "#..ooooo.......##..#\n"
+                             "#...............#..#\n"
+                             "#..................#\n"
+                             "####################\n";
+static const char wedge[] = "##################..\n"
+                            "..................##\n"
+                            "...............####.\n"
+                            "..ooooo.....####....\n"
+                            "..ooooo...###.......\n"
+                            "..ooooo...####......\n"
+                            "..ooooo.....####....\n"
+                            "...............####.\n"
+                            "..................##\n"
+                            "##################..\n";
+static const char notch[] = "####################\n"
+                            "...............#####\n"
+                            "................####\n"
+                            "..ooooo...........##\n"
+                            "..ooooo............#\n"
+                            "..ooooo............#\n"
+                            "..ooooo...........##\n"
+                            "................####\n"
+                            "...............#####\n"
+                            "####################\n";
+static const char stack[] = "......\n"
+                            ".oooo.\n"
+                            ".oooo.\n"
+                            ".oooo.\n"
+                            ".oooo.\n"
+                            "######\n";
+
+static const struct {
+  const char *name, *art;
+  double vx, vy;
+  msr_impacts impacts;
+} targets[] = {{"wall", wall, 1, 0, MSR_IMPACTS_KEPT},
+               {"corner", corner, 1, -1, MSR_IMPACTS_KEPT},
+               {"wedge", wedge, 1, 0, MSR_IMPACTS_KEPT},
+               {"notch", notch, 1, 0.3, MSR_IMPACTS_KEPT},
+               {"wall, located", wall, 1, 0, MSR_IMPACTS_LOCATED},
+               {"notch, located", notch, 1, 0.3, MSR_IMPACTS_LOCATED}};
+
+static void add_speeds(suite *s, size_t target) {
+  for (double speed = 1; speed < 2e6; speed *= 10) {
+    hard_case row = {.art = targets[target].art,
+                     .conf = {0.005, 0, 0.1, 1500, 1, 1},
+                     .scene = {.closed_border = true},
+                     .vx = speed * targets[target].vx,
+                     .vy = speed * targets[target].vy,
+                     .plan = {.impacts = targets[target].impacts},
+                     .brief = 400,
+                     .full = 20000,
+                     .growth = 0.05,
+                     .loss = 0.05,
+                     .why = "beyond 5 % of what there was to give, msr warns"};
+    snprintf(row.name, sizeof row.name, "%s at %g px/s", targets[target].name, speed);
+    add_case(s, &row);
+  }
+}
+
+static const hard_case rows[] = {
+    {.name = "stack at rest, elastic",
+     .art = stack,
+     .conf = {0.005, 9.8, 0.1, 1500, 1, 1},
+     .brief = 5000,
+     .full = 500000,
+     .growth = 0.05,
+     .loss = 0.5,
+     .why = "2 substeps, so a million steps; over the energy of its first sag"},
+    {.name = "stack at rest, soft supports",
+     .art = stack,
+     .conf = {0.005, 9.8, 0.1, 1500, 1, 1},
+     .softness = 0.5,
+     .friction = 0.5,
+     .brief = 5000,
+     .full = 500000,
+     .growth = 0.05,
+     .why = "supports only take energy"},
+};
+
+void add_impacts(suite *s) {
+  for (size_t i = 0; i < LENGTH(targets); i++) add_speeds(s, i);
+  for (size_t i = 0; i < LENGTH(rows); i++) add_case(s, &rows[i]);
+}

@@ -1,0 +1,196 @@
+/* measure.c - runs a case and judges it.
+ *
+ * Energies are over what the scene had to give: kinetic and spring energy at the start, what the
+ * other potentials have lost at most, and one kick of 2 h g, which a mass that rests on a support
+ * swings by. Where wind blows, the growth is what the library's guard saw; its own bound of the
+ * wind's work is tested in test_guard.c. */
+#include "walls.h"
+
+#include <time.h>
+
+/* ---- The scene */
+
+/* Every `step`-th pixel. */
+static msr_picture *thinned(const msr_picture *p, size_t step) {
+  msr_picture *small;
+  must(msr_picture_create(p->width / step, p->height / step, &small, &why));
+  for (size_t row = 0; row < small->height; row++)
+    for (size_t column = 0; column < small->width; column++)
+      memcpy(small->rgb + 3 * (row * small->width + column),
+             p->rgb + 3 * (row * step * p->width + column * step), 3);
+  return small;
+}
+
+static msr_picture *assignment(bool brief) {
+  msr_picture *whole;
+  must(msr_picture_read("examples/scenes/assignment.ppm", &whole, NULL, &why));
+  if (!brief) return whole;
+  msr_picture *small = thinned(whole, 4);
+  msr_picture_free(whole);
+  return small;
+}
+
+static void add_forces(const hard_case *row, msr_scene *scene) {
+  if (row->damping > 0) add_force(scene, &msr_force_damping, &(msr_damping){row->damping});
+  if (row->drag > 0) add_force(scene, &msr_force_drag, &(msr_drag){row->drag});
+  if (row->wind != 0 || row->gust > 0)
+    add_force(scene, &msr_force_wind, &(msr_wind){.speed = row->wind, .gust = row->gust});
+  if (row->push != 0) add_force(scene, &msr_force_push, &(msr_push){.fx = row->push});
+}
+
+/* A run under way. */
+typedef struct trial {
+  const hard_case *row;
+  bool brief;
+  world w;
+  walls walls;
+  double first, outer, given; /* energies: total and of outer potentials at the start; to give */
+  double halfway;             /* the most kinetic energy since the middle */
+  outcome o;
+} trial;
+
+static msr_status open_scene(const hard_case *row, bool brief, msr_picture **picture,
+                             msr_scene **scene) {
+  *picture = NULL;
+  if (row->make) {
+    *scene = row->make(row, brief);
+    return *scene ? MSR_OK : why.status;
+  }
+  *picture = row->art ? paint(row->art) : assignment(brief);
+  msr_conf conf = row->conf;
+  conf.iterations = conf.images = 1;
+  return msr_scene_from_picture("case", *picture, &conf, &row->scene, scene, &why);
+}
+
+static msr_status open_world_of(const hard_case *row, msr_scene *scene, world *w) {
+  must(msr_scene_set_contact(scene, 1 - row->softness, row->friction, &why));
+  add_forces(row, scene);
+  msr_status status = msr_plan_create(scene, &row->plan, &w->plan, &why);
+  msr_scene_free(scene);
+  return status == MSR_OK ? msr_state_create(w->plan, &w->state, &why) : status;
+}
+
+static void start(const hard_case *row, const world *w) {
+  const size_t n = msr_plan_describe(w->plan).masses;
+  const msr_arrays s = msr_state_edit(w->state);
+  for (size_t i = 0; i < n; i++) s.vx[i] += row->vx, s.vy[i] += row->vy;
+  if (row->arrange) row->arrange(row, w);
+}
+
+/* ---- Measuring */
+
+static double of_outer(const msr_energy *e) { return e->total - e->kinetic - e->spring; }
+
+static void begin(trial *t) {
+  const msr_view s = msr_state_view(t->w.state);
+  const msr_energy e = msr_state_energy(t->w.state);
+  const msr_plan_figures f = msr_plan_describe(t->w.plan);
+  double kick = 0;
+  for (size_t i = 0; i < s.n; i++)
+    kick += 2 * msr_view_mass(&s, i) * pow(f.h * t->row->conf.gravity, 2);
+  t->first = e.total;
+  t->outer = of_outer(&e);
+  t->given = e.kinetic + e.spring + kick;
+  t->o.substeps = f.substeps;
+  msri_format(t->o.integrator, sizeof t->o.integrator, "%s", f.integrator->name);
+}
+
+static uint64_t count_not_finite(const msr_view *s) {
+  uint64_t n = 0;
+  for (size_t i = 0; i < s->n; i++)
+    n += (uint64_t)(!isfinite(s->x[i]) + !isfinite(s->y[i]) + !isfinite(s->vx[i]) +
+                    !isfinite(s->vy[i]));
+  return n;
+}
+
+static double over(double energy, double given) {
+  return energy == 0 ? 0 : given > 0 ? energy / given : INFINITE;
+}
+
+static bool blows(const hard_case *row) { return row->wind != 0 || row->gust > 0; }
+
+static void look(trial *t, bool late) {
+  const msr_view s = msr_state_view(t->w.state);
+  const msr_energy e = msr_state_energy(t->w.state);
+  const double lost = t->outer - of_outer(&e);
+  const double given = t->given + fmax(0, lost), change = over(e.total - t->first, given);
+  t->o.not_finite = count_not_finite(&s);
+  t->o.penetration = fmax(t->o.penetration, deepest(&t->walls, &s));
+  if (late) t->o.rest = fmax(t->o.rest, over(e.kinetic, given));
+  if (blows(t->row))
+    t->o.growth = msr_state_energy_gain(t->w.state);
+  else
+    t->o.growth = isnan(change) ? INFINITE : fmax(t->o.growth, change);
+  t->o.loss = fmax(t->o.loss, -change);
+}
+
+static msr_status go(trial *t) {
+  enum { LOOKS = 200 };
+  const uint64_t all = t->brief ? t->row->brief : t->row->full;
+  const uint64_t piece = all < LOOKS ? 1 : all / LOOKS;
+  msr_status status = MSR_OK;
+  for (uint64_t done = 0; done < all && status == MSR_OK; done += piece) {
+    status = msr_state_step(t->w.state, piece < all - done ? piece : all - done, &why);
+    if (status == MSR_OK) status = msr_state_check(t->w.state, &why);
+    look(t, 2 * done >= all);
+  }
+  return status;
+}
+
+/* ---- Judging */
+
+static const char *breach(const trial *t) {
+  const hard_case *row = t->row;
+  const outcome *o = &t->o;
+  if (o->not_finite > 0) return "numbers that aren't finite";
+  if (o->penetration > 0) return "a mass is in a support, or through one";
+  if (!(o->growth <= row->growth)) return "the energy grew";
+  if (row->loss > 0 && !(o->loss <= row->loss)) return "the energy fell";
+  if (row->wanted == RESTS && !(o->rest <= row->rest)) return "it doesn't come to rest";
+  return row->check ? row->check(row, &t->w) : NULL;
+}
+
+static void say(outcome *o, bool failed, const char *text, const char *more) {
+  o->failed = failed;
+  msri_format(o->verdict, sizeof o->verdict, "%s%s%s", failed ? "FAILED: " : "", text, more);
+}
+
+static void judge(trial *t, msr_status status) {
+  const hard_case *row = t->row;
+  const bool ends = row->wanted == EXPLODES || row->wanted == STOPS;
+  if (ends && status == MSR_OK)
+    say(&t->o, true, "it should have been stopped", "");
+  else if (ends && row->wanted == EXPLODES && status != MSR_EUNSTABLE)
+    say(&t->o, true, "stopped, but not as unstable: ", why.message);
+  else if (ends)
+    say(&t->o, why.message[0] == '\0', "stopped, as it must be: ", why.message);
+  else if (status != MSR_OK)
+    say(&t->o, true, why.message, "");
+  else if (breach(t))
+    say(&t->o, true, breach(t), "");
+  else
+    say(&t->o, false, row->wanted == RESTS ? "at rest" : "sound", "");
+}
+
+outcome run_case(const hard_case *row, bool brief) {
+  trial t = {.row = row, .brief = brief};
+  const clock_t from = clock();
+  msr_picture *picture;
+  msr_scene *scene;
+  why.message[0] = '\0';
+  msr_status status = open_scene(row, brief, &picture, &scene);
+  if (status == MSR_OK) status = open_world_of(row, scene, &t.w);
+  if (status == MSR_OK) {
+    start(row, &t.w);
+    const msr_view s = msr_state_view(t.w.state);
+    t.walls = walls_of(picture, row->scene.closed_border, &s);
+    begin(&t);
+    status = go(&t);
+  }
+  judge(&t, status);
+  close_world(t.w);
+  forget_walls(&t.walls);
+  msr_picture_free(picture);
+  t.o.seconds = (double)(clock() - from) / CLOCKS_PER_SEC;
+  return t.o;
+}
