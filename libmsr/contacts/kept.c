@@ -5,7 +5,13 @@
  * (times the restitution), with Coulomb friction on the other component. With restitution 1 and no
  * friction each axis alone is reversible, and the two in turn keep phase-space volume: a lattice
  * isn't heated, as it is by an exact reflection. Since no pixel on the way is skipped, no speed
- * passes through. */
+ * passes through.
+ *
+ * A rebound that would be back within two steps isn't followed: its endless little jumps would be
+ * those of the step, not of the mass. With restitution below 1 such a mass rests: half a kick is
+ * still to come, so -h a / 2 along the normal leaves it no velocity. The impulse of that is the
+ * weight of a step, h a, as it should be; friction of up to so much times its coefficient holds the
+ * mass where it is, or slows it (Coulomb). */
 #include "contacts/supports.h"
 
 /* A line of pixels: bit `start` + `step` * cell, cells 0 .. cells-1; none if the line is outside.
@@ -41,34 +47,56 @@ static bool blocked(const msri_supports *s, double from, double to, double acros
   return solid_between(s, &along, floor(from), floor(to));
 }
 
-unsigned msri_supports_keep(const msri_supports *s, double to_x, double to_y, double *x, double *y,
-                            double *vx, double *vy) {
-  const double dx = to_x - *x, dy = to_y - *y;
-  unsigned collisions = 0;
-  if (floor(to_x) != floor(*x) && blocked(s, *x, to_x, *y, true)) {
-    msri_supports_reflect(s, dx, vx, vy);
-    collisions++;
-  } else {
-    *x = to_x;
+/* The velocity in the middle that half a kick brings to nothing. */
+static double ends_at_rest(const msri_leg *leg, int axis) { return -leg->h / 2 * leg->a[axis]; }
+
+/* A support is in the way along an axis. Does friction hold the mass along the other one, too? */
+static bool stop(const msri_supports *s, int axis, double way, msri_leg *leg) {
+  double *normal = &leg->v[axis], *along = &leg->v[!axis];
+  const double before = *normal;
+  if (!msri_supports_rests(s, way, before, leg->a[axis], leg->h)) {
+    msri_supports_reflect(s, way, normal, along);
+    return false;
   }
-  if (floor(to_y) != floor(*y) && blocked(s, *y, to_y, *x, false)) {
-    msri_supports_reflect(s, dy, vy, vx);
+  if (s->options.restitution < 1)
+    *normal = ends_at_rest(leg, axis);
+  else if (way * before > 0)
+    *normal = -before;
+  const double most = s->options.friction * fabs(before - *normal);
+  const double slip = *along - ends_at_rest(leg, !axis);
+  const bool holds = most > 0 && fabs(slip) <= most;
+  *along -= holds ? slip : copysign(most, slip);
+  return holds;
+}
+
+unsigned msri_supports_keep(const msri_supports *s, const double *to, msri_leg *leg) {
+  const double from[] = {leg->x[0], leg->x[1]};
+  unsigned collisions = 0;
+  for (int axis = 0; axis < MSRI_AXES; axis++) {
+    const bool same = floor(to[axis]) == floor(from[axis]);
+    if (same || !blocked(s, from[axis], to[axis], leg->x[!axis], axis == 0)) {
+      leg->x[axis] = to[axis];
+      continue;
+    }
     collisions++;
-  } else {
-    *y = to_y;
+    if (!stop(s, axis, to[axis] - from[axis], leg)) continue;
+    leg->x[0] = from[0], leg->x[1] = from[1];
+    break;
   }
   return collisions;
 }
 
 static uint64_t drift(const void *self, size_t n, double h, const double *u, const double *a,
                       double *q, double *v, double *owed) {
-  double *x = q, *y = q + n, *vx = v, *vy = v + n;
-  const double *ux = u, *uy = u + n;
   uint64_t collisions = 0;
-  (void)a, (void)owed;
-  for (size_t i = 0; i < n; i++)
-    collisions +=
-        msri_supports_keep(self, x[i] + h * ux[i], y[i] + h * uy[i], &x[i], &y[i], &vx[i], &vy[i]);
+  (void)owed;
+  for (size_t i = 0, j = n; i < n; i++, j++) {
+    const double to[] = {q[i] + h * u[i], q[j] + h * u[j]};
+    msri_leg leg = {h, {a ? a[i] : 0, a ? a[j] : 0}, {q[i], q[j]}, {v[i], v[j]}};
+    collisions += msri_supports_keep(self, to, &leg);
+    q[i] = leg.x[0], q[j] = leg.x[1];
+    v[i] = leg.v[0], v[j] = leg.v[1];
+  }
   return collisions;
 }
 
@@ -77,13 +105,17 @@ static uint64_t drift(const void *self, size_t n, double h, const double *u, con
 static uint64_t bounce(const void *self, size_t n, double h, const double *q0, const double *v0,
                        double *q, double *v, double *owed) {
   uint64_t collisions = 0;
-  (void)h, (void)owed;
+  (void)owed;
   for (size_t i = 0, j = n; i < n; i++, j++) {
-    double x = q0[i], y = q0[j], vx = (v0[i] + v[i]) / 2, vy = (v0[j] + v[j]) / 2;
-    const unsigned met = msri_supports_keep(self, q[i], q[j], &x, &y, &vx, &vy);
+    const double to[] = {q[i], q[j]}, half[] = {(v[i] - v0[i]) / 2, (v[j] - v0[j]) / 2};
+    msri_leg leg = {h,
+                    {2 * half[0] / h, 2 * half[1] / h},
+                    {q0[i], q0[j]},
+                    {(v0[i] + v[i]) / 2, (v0[j] + v[j]) / 2}};
+    const unsigned met = msri_supports_keep(self, to, &leg);
     if (met == 0) continue;
-    q[i] = x, q[j] = y;
-    v[i] = vx + (v[i] - v0[i]) / 2, v[j] = vy + (v[j] - v0[j]) / 2;
+    q[i] = leg.x[0], q[j] = leg.x[1];
+    v[i] = leg.v[0] + half[0], v[j] = leg.v[1] + half[1];
     collisions += met;
   }
   return collisions;

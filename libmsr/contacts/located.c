@@ -17,7 +17,8 @@ enum { X, Y, MOST_IMPACTS = 8 };
 /* A mass on its way: x + s rate + s^2 a / 2, `left` to go; rate is w but for a first leg whose mean
  * velocity isn't that of v. */
 typedef struct flight {
-  double x[MSRI_AXES], rate[MSRI_AXES], w[MSRI_AXES], a[MSRI_AXES], owed[MSRI_AXES], left;
+  double x[MSRI_AXES], rate[MSRI_AXES], w[MSRI_AXES], a[MSRI_AXES], owed[MSRI_AXES];
+  double left, step; /* of the whole flight */
 } flight;
 
 /* ---- When a support is met, and what follows */
@@ -32,16 +33,18 @@ static double crossing(const flight *f, const msri_face *met) {
 }
 
 /* Goes to the impact and is reflected; false, and nothing is done, if that place isn't free or no
- * impact: the mass only presses on the support. */
+ * impact: the mass only presses on the support, or will at once. */
 static bool strike_face(const msri_supports *s, const msri_face *met, flight *f) {
   const int d = met->axis, other = !d;
   const double t = crossing(f, met), speed = met->side * (f->w[d] + t * f->a[d]);
+  const double e = s->options.restitution;
   const double rest = 1e-9 * fabs(f->a[d]) * f->left; // a speed that is rounding
   double x[MSRI_AXES];
   msri_face before;
   x[d] = met->edge;
   x[other] = f->x[other] + t * (f->rate[other] + t * f->a[other] / 2);
   if (!(t >= 0 && speed > rest) || !isfinite(x[other])) return false;
+  if (e < 1 && msri_supports_rests(s, met->side, speed, f->a[d], f->step)) return false;
   if (msri_supports_face(s, f->x, x, &before)) return false;
   f->left -= t;
   for (int k = X; k < MSRI_AXES; k++) {
@@ -49,7 +52,7 @@ static bool strike_face(const msri_supports *s, const msri_face *met, flight *f)
     f->w[k] += t * f->a[k];
     f->owed[k] += t / 2;
   }
-  f->owed[d] *= -s->options.restitution;
+  f->owed[d] *= -e;
   msri_supports_reflect(s, met->side, &f->w[d], &f->w[other]);
   f->rate[X] = f->w[X], f->rate[Y] = f->w[Y];
   return true;
@@ -63,9 +66,12 @@ static void end_of(const flight *f, double *to) {
 /* For the rest of the time the old rule: reflected in the middle of it. */
 static unsigned stay(const msri_supports *s, const double *to, flight *f) {
   const double half = f->left / 2;
-  double v[] = {f->w[X] + half * f->a[X], f->w[Y] + half * f->a[Y]};
-  const unsigned collisions = msri_supports_keep(s, to[X], to[Y], &f->x[X], &f->x[Y], &v[X], &v[Y]);
-  for (int d = X; d < MSRI_AXES; d++) f->w[d] = v[d] + half * f->a[d];
+  msri_leg leg = {f->left,
+                  {f->a[X], f->a[Y]},
+                  {f->x[X], f->x[Y]},
+                  {f->w[X] + half * f->a[X], f->w[Y] + half * f->a[Y]}};
+  const unsigned collisions = msri_supports_keep(s, to, &leg);
+  for (int d = X; d < MSRI_AXES; d++) f->x[d] = leg.x[d], f->w[d] = leg.v[d] + half * f->a[d];
   return collisions;
 }
 
@@ -114,7 +120,8 @@ static uint64_t drift(const void *self, size_t n, double h, const double *u, con
                 .rate = {u[i] - ai * h / 2, u[j] - aj * h / 2},
                 .w = {v[i] - ai * h / 2, v[j] - aj * h / 2},
                 .a = {ai, aj},
-                .left = h};
+                .left = h,
+                .step = h};
     collisions += fly(self, to, &f);
     q[i] = f.x[X], q[j] = f.x[Y];
     v[i] = f.w[X] - (owed ? f.owed[X] : h / 2) * ai;
@@ -130,7 +137,7 @@ static uint64_t drift(const void *self, size_t n, double h, const double *u, con
 static flight flight_of(double h, const double *q0, const double *v0, const double *q,
                         const double *v, size_t i, size_t j, bool follows) {
   const size_t at[] = {i, j};
-  flight f = {.left = h};
+  flight f = {.left = h, .step = h};
   for (int d = X; d < MSRI_AXES; d++) {
     const size_t k = at[d];
     const double u = (q[k] - q0[k]) / h;

@@ -39,9 +39,22 @@ static inline void msri_supports_reflect(const msri_supports *s, double way, dou
 bool msri_supports_face(const msri_supports *s, const double *from, const double *to,
                         msri_face *met);
 
-/* A mass goes to (to_x, to_y) by the rule MSR_IMPACTS_KEPT. Returns the number of collisions. */
-unsigned msri_supports_keep(const msri_supports *s, double to_x, double to_y, double *x, double *y,
-                            double *vx, double *vy);
+/* A step of a mass: it lasts h, a is its acceleration, and v its velocity in the middle. */
+typedef struct msri_leg {
+  double h, a[MSRI_AXES], x[MSRI_AXES], v[MSRI_AXES];
+} msri_leg;
+
+/* Does a mass that moves by `way` into a support come back to it within two steps of h? It's
+ * reflected from `speed`, and `a` presses it on the support. */
+static inline bool msri_supports_rests(const msri_supports *s, double way, double speed, double a,
+                                       double h) {
+  const double e = s->options.restitution;
+  return (e < 1 || s->options.friction > 0) && way * a > 0 && e * fabs(speed) <= h * fabs(a);
+}
+
+/* The mass of a leg goes to `to` [2] by the rule MSR_IMPACTS_KEPT. Returns the number of
+ * collisions. */
+unsigned msri_supports_keep(const msri_supports *s, const double *to, msri_leg *leg);
 
 /* The callbacks of a rule; the rest of the contact isn't set. */
 extern const msri_contact msri_impacts_kept, msri_impacts_located;

@@ -121,7 +121,7 @@ static void look(trial *t, bool late) {
     t->o.growth = msr_state_energy_gain(t->w.state);
   else
     t->o.growth = isnan(change) ? INFINITE : fmax(t->o.growth, change);
-  t->o.loss = fmax(t->o.loss, -change);
+  if (change < 0) t->o.loss = fmax(t->o.loss, -change);
 }
 
 static msr_status go(trial *t) {
@@ -158,6 +158,8 @@ static void say(outcome *o, bool failed, const char *text, const char *more) {
 static void judge(trial *t, msr_status status) {
   const hard_case *row = t->row;
   const bool ends = row->wanted == EXPLODES || row->wanted == STOPS;
+  char kinetic[40] = "";
+  if (row->wanted == RESTS) msri_format(kinetic, sizeof kinetic, ", kinetic %.2g", t->o.rest);
   if (ends && status == MSR_OK)
     say(&t->o, true, "it should have been stopped", "");
   else if (ends && row->wanted == EXPLODES && status != MSR_EUNSTABLE)
@@ -167,9 +169,9 @@ static void judge(trial *t, msr_status status) {
   else if (status != MSR_OK)
     say(&t->o, true, why.message, "");
   else if (breach(t))
-    say(&t->o, true, breach(t), "");
+    say(&t->o, true, breach(t), kinetic);
   else
-    say(&t->o, false, row->wanted == RESTS ? "at rest" : "sound", "");
+    say(&t->o, false, row->wanted == RESTS ? "at rest" : "sound", kinetic);
 }
 
 outcome run_case(const hard_case *row, bool brief) {
