@@ -97,6 +97,10 @@ msr_view msri_plan_view(const msr_plan *plan, double t, const double *q, const d
 /* "pixel (12,5)" or "mass 7": what a user calls a mass. Returns text. */
 const char *msri_plan_mass_name(const msr_plan *plan, size_t mass, char *text, size_t size);
 
+/* Steps that are safe are no larger than this share of the stable one. `start` is the scene there.
+ */
+double msri_plan_safe_share(const msr_plan *plan, const msr_view *start);
+
 /* Fills the stable step and the substeps in the figures, and what the user should know of them. */
 msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t substeps,
                                  msr_error *err);

@@ -47,26 +47,6 @@ static double stable_step(const msr_plan_figures *f, double damping) {
   return 1 / ((f->omega > 0 ? f->omega / f->integrator->stability : 0) + damping);
 }
 
-/* Weight times the height of the picture, per mass, over k L^2 of its springs: how far a fall can
- * crush them. */
-static double crush(const msr_plan *plan) {
-  double g = 0;
-  for (size_t i = 0; i < plan->n_terms; i++)
-    if (plan->term[i].force == &msr_force_gravity)
-      g += ((const msr_gravity *)plan->term[i].params)->g;
-  return plan->uniform_mass * fabs(g) * (double)plan->figures.height / plan->mesh.lattice_k;
-}
-
-/* At the limit rounding is enough to make a mode grow. Where impacts excite every mode, a lattice
- * that crumples heats from 0.8 of the limit on, and doesn't at half of it; one that is crushed,
- * from about 0.15 on, has masses that pass through each other, whose force turns round within a
- * step: measured, up to 8 times smaller steps keep its energy to a few per cent. */
-static double safe_share(const msr_plan *plan) {
-  if (!plan->contact.drift) return 0.9;
-  const double crushed = crush(plan) / 0.15;
-  return crushed > 1 ? 0.5 / msri_min(crushed, 8) : 0.5;
-}
-
 /* Verlet's limit. */
 static const double resolved = 2;
 
@@ -74,11 +54,11 @@ static const double resolved = 2;
  * spring: supports, which stop a mass while its neighbours go on for the rest of the step, and
  * methods that keep phase-space area, whose energy grows when long steps meet springs that turn and
  * buckle. */
-static double safe_step(const msr_plan *plan) {
+static double safe_step(const msr_plan *plan, const msr_view *start) {
   const msr_plan_figures *f = &plan->figures;
   const bool follows = plan->contact.drift || f->integrator->symplectic;
   const bool any = f->integrator->implicit && isinf(f->stable_step) && f->omega > 0;
-  return safe_share(plan) * (any && follows ? resolved / f->omega : f->stable_step);
+  return msri_plan_safe_share(plan, start) * (any && follows ? resolved / f->omega : f->stable_step);
 }
 
 /* The fewest equal steps of dt that are safe. */
@@ -125,7 +105,7 @@ msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t
   const msr_status status = bound_rates(plan, start, &damping, err);
   if (status != MSR_OK) return status;
   f->stable_step = stable_step(f, damping);
-  f->safe_step = safe_step(plan);
+  f->safe_step = safe_step(plan, start);
   const double needed = f->stable_step > 0 ? fewest(f) : 1;
   const bool any = isinf(f->stable_step);
   const double largest = any ? f->safe_step : f->stable_step;

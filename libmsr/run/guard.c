@@ -64,9 +64,11 @@ static bool is_outer(const msr_force *force) {
 /* Energy of every mass after a kick of 2 h F from rest; f[2n] are the outer forces. */
 static double kick_energy(const msr_view *s, double h, const double *f) {
   double sum = 0;
-  for (size_t i = 0; i < s->n; i++)
-    sum += (f[i] * f[i] + f[s->n + i] * f[s->n + i]) / msr_view_mass(s, i);
-  return 2 * h * h * sum;
+  for (size_t i = 0; i < s->n; i++) {
+    const double m = msr_view_mass(s, i), vx = 2 * h * (f[i] / m), vy = 2 * h * (f[s->n + i] / m);
+    sum += m * (vx * vx + vy * vy);
+  }
+  return sum / 2;
 }
 
 static double rounding_energy(const msr_view *s, double omega) {

@@ -62,19 +62,27 @@ static const struct {
                {"wall, located", wall, 1, 0, MSR_IMPACTS_LOCATED},
                {"notch, located", notch, 1, 0.3, MSR_IMPACTS_LOCATED}};
 
+/* The block is crushed where m v^2 / 2 is near k: at 100 px/s. Faster, it hardly gets on in a room
+ * that it would cross many times in a step. */
 static void add_speeds(suite *s, size_t target) {
   for (double speed = 1; speed < 2e6; speed *= 10) {
+    const bool slow = speed<50, blur = speed> 5e3;
     hard_case row = {.art = targets[target].art,
                      .conf = {0.005, 0, 0.1, 1500, 1, 1},
                      .scene = {.closed_border = true},
                      .vx = speed * targets[target].vx,
                      .vy = speed * targets[target].vy,
                      .plan = {.impacts = targets[target].impacts},
-                     .brief = 400,
-                     .full = 20000,
-                     .growth = 0.05,
-                     .loss = 0.05,
-                     .why = "beyond 5 % of what there was to give, msr warns"};
+                     .brief = slow   ? 2000
+                              : blur ? 50
+                                     : 400,
+                     .full = slow ? 20000 : 2000,
+                     .growth = slow ? 0.05 : 0.1,
+                     .loss = blur ? 0 : 0.1,
+                     .why = slow   ? why_modified
+                            : blur ? "more impacts in a step than are followed: springs may slow "
+                                     "what doesn't get on, and give nothing"
+                                   : why_crushed};
     snprintf(row.name, sizeof row.name, "%s at %g px/s", targets[target].name, speed);
     add_case(s, &row);
   }

@@ -8,36 +8,6 @@
 
 #include <time.h>
 
-/* ---- The scene */
-
-/* Every `step`-th pixel. */
-static msr_picture *thinned(const msr_picture *p, size_t step) {
-  msr_picture *small;
-  must(msr_picture_create(p->width / step, p->height / step, &small, &why));
-  for (size_t row = 0; row < small->height; row++)
-    for (size_t column = 0; column < small->width; column++)
-      memcpy(small->rgb + 3 * (row * small->width + column),
-             p->rgb + 3 * (row * step * p->width + column * step), 3);
-  return small;
-}
-
-static msr_picture *assignment(bool brief) {
-  msr_picture *whole;
-  must(msr_picture_read("examples/scenes/assignment.ppm", &whole, NULL, &why));
-  if (!brief) return whole;
-  msr_picture *small = thinned(whole, 4);
-  msr_picture_free(whole);
-  return small;
-}
-
-static void add_forces(const hard_case *row, msr_scene *scene) {
-  if (row->damping > 0) add_force(scene, &msr_force_damping, &(msr_damping){row->damping});
-  if (row->drag > 0) add_force(scene, &msr_force_drag, &(msr_drag){row->drag});
-  if (row->wind != 0 || row->gust > 0)
-    add_force(scene, &msr_force_wind, &(msr_wind){.speed = row->wind, .gust = row->gust});
-  if (row->push != 0) add_force(scene, &msr_force_push, &(msr_push){.fx = row->push});
-}
-
 /* A run under way. */
 typedef struct trial {
   const hard_case *row;
@@ -49,32 +19,10 @@ typedef struct trial {
   outcome o;
 } trial;
 
-static msr_status open_scene(const hard_case *row, bool brief, msr_picture **picture,
-                             msr_scene **scene) {
-  *picture = NULL;
-  if (row->make) {
-    *scene = row->make(row, brief);
-    return *scene ? MSR_OK : why.status;
-  }
-  *picture = row->art ? paint(row->art) : assignment(brief);
-  msr_conf conf = row->conf;
-  conf.iterations = conf.images = 1;
-  return msr_scene_from_picture("case", *picture, &conf, &row->scene, scene, &why);
-}
-
 static msr_status open_world_of(const hard_case *row, msr_scene *scene, world *w) {
-  must(msr_scene_set_contact(scene, 1 - row->softness, row->friction, &why));
-  add_forces(row, scene);
-  msr_status status = msr_plan_create(scene, &row->plan, &w->plan, &why);
+  const msr_status status = msr_plan_create(scene, &row->plan, &w->plan, &why);
   msr_scene_free(scene);
   return status == MSR_OK ? msr_state_create(w->plan, &w->state, &why) : status;
-}
-
-static void start(const hard_case *row, const world *w) {
-  const size_t n = msr_plan_describe(w->plan).masses;
-  const msr_arrays s = msr_state_edit(w->state);
-  for (size_t i = 0; i < n; i++) s.vx[i] += row->vx, s.vy[i] += row->vy;
-  if (row->arrange) row->arrange(row, w);
 }
 
 /* ---- Measuring */
@@ -90,7 +38,8 @@ static void begin(trial *t) {
     kick += 2 * msr_view_mass(&s, i) * pow(f.h * t->row->conf.gravity, 2);
   t->first = e.total;
   t->outer = of_outer(&e);
-  t->given = e.kinetic + e.spring + kick;
+  const double rounding = DBL_EPSILON * (double)s.n * fabs(e.total);
+  t->given = e.kinetic + (t->row->from_rest ? 0 : e.spring) + kick + rounding;
   t->o.substeps = f.substeps;
   msri_format(t->o.integrator, sizeof t->o.integrator, "%s", f.integrator->name);
 }
@@ -180,10 +129,10 @@ outcome run_case(const hard_case *row, bool brief) {
   msr_picture *picture;
   msr_scene *scene;
   why.message[0] = '\0';
-  msr_status status = open_scene(row, brief, &picture, &scene);
+  msr_status status = make_scene(row, brief, &picture, &scene);
   if (status == MSR_OK) status = open_world_of(row, scene, &t.w);
   if (status == MSR_OK) {
-    start(row, &t.w);
+    if (row->arrange) row->arrange(row, &t.w);
     const msr_view s = msr_state_view(t.w.state);
     t.walls = walls_of(picture, row->scene.closed_border, &s);
     begin(&t);

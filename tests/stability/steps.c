@@ -6,11 +6,12 @@
 static const struct {
   double times;
   uint64_t brief, full;
-} rows[] = {{1, 200, 20000}, {2, 100, 10000}, {10, 20, 2000}, {100, 2, 200}, {1000, 1, 20}};
+} rows[] = {{1, 400, 20000}, {2, 200, 10000}, {10, 40, 2000}, {100, 4, 200}, {1000, 1, 20}};
 
 void add_steps(suite *s) {
   for (size_t i = 0; i < LENGTH(rows); i++) {
     hard_case row = {.conf = conf_of_assignment,
+                     .whole = true,
                      .brief = rows[i].brief,
                      .full = rows[i].full,
                      .growth = 0.01,
@@ -20,6 +21,9 @@ void add_steps(suite *s) {
     snprintf(row.name, sizeof row.name, "large step, DT x%g", rows[i].times);
     add_case(s, &row);
   }
+}
+
+void add_ages(suite *s) {
   add_case(s, &(hard_case){.name = "the assignment for 10 000 s",
                            .conf = conf_of_assignment,
                            .full = 2000000,
