@@ -44,6 +44,16 @@ static const char notch[] = "####################\n"
                             "................####\n"
                             "...............#####\n"
                             "####################\n";
+static const char bullets[] = "####################\n"
+                              "#.........#........#\n"
+                              "#.o.......#..####..#\n"
+                              "#...o.....#.....#..#\n"
+                              "#.o.......#.....#..#\n"
+                              "#...o..o..#.....#..#\n"
+                              "#.o.......#........#\n"
+                              "#...o......#.......#\n"
+                              "#...........#......#\n"
+                              "####################\n";
 static const char stack[] = "......\n"
                             ".oooo.\n"
                             ".oooo.\n"
@@ -59,6 +69,8 @@ static const struct {
                {"corner", corner, 1, -1, MSR_IMPACTS_KEPT},
                {"wedge", wedge, 1, 0, MSR_IMPACTS_KEPT},
                {"notch", notch, 1, 0.3, MSR_IMPACTS_KEPT},
+               {"bullets", bullets, 1, 0.37, MSR_IMPACTS_KEPT},
+               {"bullets, located", bullets, 1, 0.37, MSR_IMPACTS_LOCATED},
                {"wall, located", wall, 1, 0, MSR_IMPACTS_LOCATED},
                {"notch, located", notch, 1, 0.3, MSR_IMPACTS_LOCATED}};
 

@@ -96,7 +96,7 @@ static void add_side(suite *s, const msr_integrator *integrator, size_t shape, b
       .parameter = (double)shape,
       .conf = {.dt = (none ? 0.05 : share * integrator->stability) / omega_of(&shapes[shape])},
       .plan = {.integrator = integrator, .substeps = 1},
-      .brief = above || none ? 300000 : 10000,
+      .brief = above || none ? 50000 : 10000,
       .full = 1000000,
       .wanted = above || none ? EXPLODES : SOUND,
       .from_rest = true,

@@ -71,6 +71,9 @@ static void add_gravities(suite *s) {
     row.conf.gravity = g[i];
     snprintf(row.name, sizeof row.name, "GRAVITE %g", g[i]);
     add_case(s, &row);
+    row.plan.impacts = MSR_IMPACTS_LOCATED;
+    snprintf(row.name, sizeof row.name, "GRAVITE %g, located", g[i]);
+    if (fabs(g[i]) > 5) add_case(s, &row);
   }
 }
 

@@ -14,6 +14,7 @@ void add_steps(suite *s) {
                      .whole = true,
                      .brief = rows[i].brief,
                      .full = rows[i].full,
+                     .of_total = true,
                      .growth = 0.01,
                      .loss = 0.01,
                      .why = "100 s: the guide promises 1 % for this scene, whatever DT is"};
@@ -27,6 +28,7 @@ void add_ages(suite *s) {
   add_case(s, &(hard_case){.name = "the assignment for 10 000 s",
                            .conf = conf_of_assignment,
                            .full = 2000000,
+                           .of_total = true,
                            .growth = 0.01,
                            .loss = 0.01,
                            .why = "no secular drift: a symplectic method keeps a modified energy"});

@@ -37,6 +37,7 @@ typedef struct hard_case {
   uint64_t brief, full; /* iterations; 0: not in that form */
   wanted wanted;
   bool from_rest;      /* the springs' energy at the start isn't to give: they hold each other */
+  bool of_total;       /* the bounds are shares of the total energy at the start */
   double growth, loss; /* most change of the energy over what there was to give; loss 0: any */
   double rest;         /* likewise, kinetic */
   /* What else must be so at the end: NULL, or what is wrong. */
