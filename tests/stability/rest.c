@@ -173,6 +173,65 @@ static const hard_case rows[] = {
      .why = why_damped},
 };
 
+/* A mass on the floor, pushed along it by `push`: held within the cone of friction, else it slides
+ * as Coulomb says, from rest. */
+static const char floor_only[] = "........................................\n"
+                                 ".o......................................\n"
+                                 "########################################\n";
+
+static const char *slides(const hard_case *row, const world *w) {
+  const msr_view s = msr_state_view(w->state);
+  const double a = row->push / row->conf.mass - row->friction * row->conf.gravity;
+  const double fallen = 2 * 0.5; /* px/s, which the first touch takes from it at most: g, 0.5 px */
+  return fabs(s.vx[0] - a * s.t) < fallen + 0.05 * a * s.t ? NULL : "it doesn't slide as it must";
+}
+
+static const hard_case pushed[] = {
+    {.name = "rest: pushed, held by friction",
+     .art = floor_only,
+     EXAMPLE,
+     .push = 0.25,
+     .softness = 0.5,
+     .friction = 0.3,
+     .brief = 5000,
+     .full = 1000000,
+     .wanted = RESTS,
+     .growth = 0.01,
+     .why = "0.25 < 0.3 m g"},
+    {.name = "pushed, slides against friction",
+     .art = floor_only,
+     EXAMPLE,
+     .push = 0.4,
+     .softness = 0.5,
+     .friction = 0.3,
+     .brief = 1000,
+     .full = 1000,
+     .growth = 0.01,
+     .check = slides,
+     .why = "0.4 > 0.3 m g: a = F / m - 0.3 g"},
+};
+
+/* By every method: where the library sees to impacts after each step, too. */
+static void add_methods(suite *s) {
+  for (const msr_integrator *const *i = msr_integrators; *i; i++) {
+    hard_case row = {.art = dropped,
+                     EXAMPLE,
+                     .softness = 0.5,
+                     .friction = 0.3,
+                     .plan = {.integrator = *i},
+                     .brief = 5000,
+                     .full = 100000,
+                     .wanted = RESTS,
+                     .growth = 0.01,
+                     .rest = *i == &msr_integrator_symplectic_euler ? 1e-5 : 1e-30,
+                     .why = "0 but for rounding; symplectic Euler has h g / 2 too much, always"};
+    msri_format(row.name, sizeof row.name, "rest: a mass, %s", (*i)->name);
+    if ((*i)->stability > 0) add_case(s, &row);
+  }
+}
+
 void add_rest(suite *s) {
   for (size_t i = 0; i < LENGTH(rows); i++) add_case(s, &rows[i]);
+  for (size_t i = 0; i < LENGTH(pushed); i++) add_case(s, &pushed[i]);
+  add_methods(s);
 }
