@@ -553,7 +553,7 @@ typedef struct msr_plan_figures {
   double stable_step; /* steps below this are stable at any stretch [s]; 0: none; may be INFINITY */
   double safe_step;   /* the library's own steps are no larger: 0.9 of it; where supports may be hit
                        * 0.5, and down to 1/16 where a fall can crush springs, m g H > 0.15 k L^2,
-                       * 1/64 where what moves or is compressed at the start can;
+                       * 1/128 where what moves or is compressed at the start can;
                        * of implicit methods there, and of symplectic ones, the same of 2 / omega */
   double omega;       /* bound of the angular frequencies, at any stretch [1/s] (Gershgorin) */
   double gamma;       /* bound of the rates of damping that limit the step [1/s] */
