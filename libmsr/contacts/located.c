@@ -17,8 +17,7 @@ enum { X, Y, MOST_IMPACTS = 8 };
 /* A mass on its way: x + s rate + s^2 a / 2, `left` to go; rate is w but for a first leg whose mean
  * velocity isn't that of v. */
 typedef struct flight {
-  double x[MSRI_AXES], rate[MSRI_AXES], w[MSRI_AXES], a[MSRI_AXES], owed[MSRI_AXES];
-  double left, step; /* of the whole flight */
+  double x[MSRI_AXES], rate[MSRI_AXES], w[MSRI_AXES], a[MSRI_AXES], owed[MSRI_AXES], left;
 } flight;
 
 /* ---- When a support is met, and what follows */
@@ -33,18 +32,16 @@ static double crossing(const flight *f, const msri_face *met) {
 }
 
 /* Goes to the impact and is reflected; false, and nothing is done, if that place isn't free or no
- * impact: the mass only presses on the support, or will at once. */
+ * impact: the mass only presses on the support. */
 static bool strike_face(const msri_supports *s, const msri_face *met, flight *f) {
   const int d = met->axis, other = !d;
   const double t = crossing(f, met), speed = met->side * (f->w[d] + t * f->a[d]);
-  const double e = s->options.restitution;
   const double rest = 1e-9 * fabs(f->a[d]) * f->left; // a speed that is rounding
   double x[MSRI_AXES];
   msri_face before;
   x[d] = met->edge;
   x[other] = f->x[other] + t * (f->rate[other] + t * f->a[other] / 2);
   if (!(t >= 0 && speed > rest) || !isfinite(x[other])) return false;
-  if (e < 1 && msri_supports_rests(s, met->side, speed, f->a[d], f->step)) return false;
   if (msri_supports_face(s, f->x, x, &before)) return false;
   f->left -= t;
   for (int k = X; k < MSRI_AXES; k++) {
@@ -52,7 +49,7 @@ static bool strike_face(const msri_supports *s, const msri_face *met, flight *f)
     f->w[k] += t * f->a[k];
     f->owed[k] += t / 2;
   }
-  f->owed[d] *= -e;
+  f->owed[d] *= -s->options.restitution;
   msri_supports_reflect(s, met->side, &f->w[d], &f->w[other]);
   f->rate[X] = f->w[X], f->rate[Y] = f->w[Y];
   return true;
@@ -63,7 +60,7 @@ static void end_of(const flight *f, double *to) {
     to[d] = f->x[d] + f->left * (f->rate[d] + f->left * f->a[d] / 2);
 }
 
-/* For the rest of the time the old rule: reflected in the middle of it. */
+/* For the rest of the time the old rule: reflected in the middle of it, or at rest. */
 static unsigned stay(const msri_supports *s, const double *to, flight *f) {
   const double half = f->left / 2;
   msri_leg leg = {f->left,
@@ -120,8 +117,7 @@ static uint64_t drift(const void *self, size_t n, double h, const double *u, con
                 .rate = {u[i] - ai * h / 2, u[j] - aj * h / 2},
                 .w = {v[i] - ai * h / 2, v[j] - aj * h / 2},
                 .a = {ai, aj},
-                .left = h,
-                .step = h};
+                .left = h};
     collisions += fly(self, to, &f);
     q[i] = f.x[X], q[j] = f.x[Y];
     v[i] = f.w[X] - (owed ? f.owed[X] : h / 2) * ai;
@@ -137,7 +133,7 @@ static uint64_t drift(const void *self, size_t n, double h, const double *u, con
 static flight flight_of(double h, const double *q0, const double *v0, const double *q,
                         const double *v, size_t i, size_t j, bool follows) {
   const size_t at[] = {i, j};
-  flight f = {.left = h, .step = h};
+  flight f = {.left = h};
   for (int d = X; d < MSRI_AXES; d++) {
     const size_t k = at[d];
     const double u = (q[k] - q0[k]) / h;
