@@ -92,6 +92,10 @@ static uint64_t drift(const void *self, size_t n, double h, const double *u, con
   (void)owed;
   for (size_t i = 0, j = n; i < n; i++, j++) {
     const double to[] = {q[i] + h * u[i], q[j] + h * u[j]};
+    if (floor(to[0]) == floor(q[i]) && floor(to[1]) == floor(q[j])) {
+      q[i] = to[0], q[j] = to[1];
+      continue;
+    }
     msri_leg leg = {h, {a ? a[i] : 0, a ? a[j] : 0}, {q[i], q[j]}, {v[i], v[j]}};
     collisions += msri_supports_keep(self, to, &leg);
     q[i] = leg.x[0], q[j] = leg.x[1];
