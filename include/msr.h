@@ -449,7 +449,10 @@ MSR_API msr_status msr_scene_set_times(msr_scene *scene, double dt, uint64_t ite
                                        uint64_t images, msr_error *err);
 
 /* Supports: a mass that meets one comes back with `restitution` (0..1, 1 at first) of its normal
- * speed; Coulomb friction `friction` (>= 0, 0 at first) acts along it. MSR_EUSAGE. */
+ * speed; Coulomb friction `friction` (>= 0, 0 at first) acts along it. With a restitution below 1 a
+ * mass rests, and has no normal velocity, where forces (those that don't depend on v) press it on
+ * the support and would bring it back within two steps; friction of up to its coefficient times the
+ * pressure then holds it where it is. MSR_EUSAGE. */
 MSR_API msr_status msr_scene_set_contact(msr_scene *scene, double restitution, double friction,
                                          msr_error *err);
 

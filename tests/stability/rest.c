@@ -186,7 +186,27 @@ static const char *slides(const hard_case *row, const world *w) {
   return fabs(s.vx[0] - a * s.t) < fallen + 0.05 * a * s.t ? NULL : "it doesn't slide as it must";
 }
 
+/* Wind alone presses a mass on a wall: the rule doesn't see it, and leaves what a step of it gives.
+ */
+static const char *shakes_little(const hard_case *row, const world *w) {
+  const msr_view s = msr_state_view(w->state);
+  const double most = msr_plan_describe(w->plan).h * row->wind; /* c = m / 1 s */
+  return hypot(s.vx[0], s.vy[0]) <= most ? NULL : "it shakes by more than h c w / m";
+}
+
 static const hard_case pushed[] = {
+    {.name = "wind presses on a wall",
+     .art = floor_only,
+     .conf = {0.005, 0, 0.1, 1500, 1, 1},
+     CLOSED,
+     .wind = 5,
+     .softness = 0.5,
+     .friction = 0.3,
+     .brief = 10000,
+     .full = 1000000,
+     .growth = 0.01,
+     .check = shakes_little,
+     .why = "drag of the air takes what it gives"},
     {.name = "rest: pushed, held by friction",
      .art = floor_only,
      EXAMPLE,
