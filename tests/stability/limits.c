@@ -91,6 +91,8 @@ static double above_limit(const msr_integrator *integrator) {
 static void add_side(suite *s, const msr_integrator *integrator, size_t shape, bool above) {
   const double share = above ? above_limit(integrator) : 0.98;
   const bool none = integrator->stability == 0;
+  // what grows leaves a narrow band, as springs aren't linear
+  const bool band = integrator == &msr_integrator_srkn6 && shapes[shape].stretch > 1;
   hard_case row = {
       .make = make_shape,
       .parameter = (double)shape,
@@ -98,7 +100,9 @@ static void add_side(suite *s, const msr_integrator *integrator, size_t shape, b
       .plan = {.integrator = integrator, .substeps = 1},
       .brief = above || none ? 50000 : 10000,
       .full = 1000000,
-      .wanted = above || none ? EXPLODES : SOUND,
+      .wanted = !(above || none) ? SOUND
+                : band           ? GROWS
+                                 : EXPLODES,
       .from_rest = true,
       .growth = 100,
       .why = "at a share s of the limit the energy of a mode swings by at most "

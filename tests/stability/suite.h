@@ -13,6 +13,7 @@ typedef enum wanted {
   SOUND,    /* no error, all numbers finite, energy within its bounds, nothing in a support */
   RESTS,    /* the same, and in the second half the kinetic energy is at most `rest` */
   EXPLODES, /* MSR_EUNSTABLE, with a message */
+  GROWS,    /* the same, or a growth of a million times, which tensions may hide from the guard */
   STOPS     /* any error with a message: the case is beyond what numbers can hold */
 } wanted;
 
