@@ -63,10 +63,10 @@ static void end_of(const flight *f, double *to) {
 /* For the rest of the time the old rule: reflected in the middle of it, or at rest. */
 static unsigned stay(const msri_supports *s, const double *to, flight *f) {
   const double half = f->left / 2;
-  msri_leg leg = {f->left,
-                  {f->a[X], f->a[Y]},
-                  {f->x[X], f->x[Y]},
-                  {f->w[X] + half * f->a[X], f->w[Y] + half * f->a[Y]}};
+  msri_leg leg = {.h = f->left,
+                  .a = {f->a[X], f->a[Y]},
+                  .x = {f->x[X], f->x[Y]},
+                  .v = {f->w[X] + half * f->a[X], f->w[Y] + half * f->a[Y]}};
   const unsigned collisions = msri_supports_keep(s, to, &leg);
   for (int d = X; d < MSRI_AXES; d++) f->x[d] = leg.x[d], f->w[d] = leg.v[d] + half * f->a[d];
   return collisions;

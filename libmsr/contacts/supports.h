@@ -39,9 +39,12 @@ static inline void msri_supports_reflect(const msri_supports *s, double way, dou
 bool msri_supports_face(const msri_supports *s, const double *from, const double *to,
                         msri_face *met);
 
-/* A step of a mass: it lasts h, a is its acceleration, and v its velocity in the middle. */
+/* A step of a mass: it lasts h, a is its acceleration at the start, and v its velocity in the
+ * middle. If `follows`, what the acceleration at the end is to be multiplied by and added to v goes
+ * to owed; else that acceleration is taken to be a. */
 typedef struct msri_leg {
-  double h, a[MSRI_AXES], x[MSRI_AXES], v[MSRI_AXES];
+  double h, a[MSRI_AXES], x[MSRI_AXES], v[MSRI_AXES], owed[MSRI_AXES];
+  bool follows;
 } msri_leg;
 
 /* Does a mass that moves by `way` into a support come back to it within two steps of h? It's

@@ -1,8 +1,8 @@
 /* contacts.c - what is in the way, as integrators and the library's own steps see it.
  *
- * With impacts that are located, masses that met something are owed a part of the acceleration at
- * the end of the step (see contacts/located.c), which is evaluated at once, and kept for the
- * integrator to find when it asks for it next. */
+ * Masses that met something are owed a part of the acceleration at the end of the step (see
+ * contacts/kept.c and located.c), which is evaluated at once, and kept for the integrator to find
+ * when it asks for it next. */
 #include "plan/state.h"
 
 #include <string.h>
@@ -53,7 +53,7 @@ msr_status msri_state_bounce(void *self, double h, const double *q0, const doubl
   const msri_contact *contact = &state->plan->contact;
   const size_t n = state->plan->figures.masses;
   // in the last moment of a step what is owed is nothing, and the rounding of (q - q0) / h is much
-  double *owed = h > 1e-3 * state->plan->figures.h ? state->owed : NULL;
+  double *owed = contact->meet && h > 1e-3 * state->plan->figures.h ? state->owed : NULL;
   const uint64_t collisions = contact->bounce(contact->self, n, h, q0, v0, q, v, owed);
   *met = collisions > 0;
   state->known.q = NULL;

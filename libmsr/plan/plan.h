@@ -72,9 +72,12 @@ static inline bool msri_plan_bounces(const msr_plan *plan) {
 }
 
 /* Does what met something need the acceleration at the end of the step? Implicit methods, whose
- * steps may be too long for what that would say, do without. */
+ * steps may be too long for what that would say, do without; so do methods that leave contacts to
+ * the library, where places are kept. */
 static inline bool msri_plan_settles(const msr_plan *plan) {
-  return plan->contact.meet && !plan->figures.integrator->implicit;
+  const msr_integrator *integrator = plan->figures.integrator;
+  if (!plan->contact.drift || integrator->implicit) return false;
+  return plan->contact.meet || integrator->bounces;
 }
 
 /* The time after so many iterations and substeps: made of whole numbers, never summed, so that
