@@ -47,14 +47,19 @@ static double stable_step(const msr_plan_figures *f, double damping) {
   return 1 / ((f->omega > 0 ? f->omega / f->integrator->stability : 0) + damping);
 }
 
-/* Weight times the height of the picture, per mass, over k L^2 of its springs: how far a fall can
- * crush them. */
-static double crush(const msr_plan *plan) {
+double msri_plan_gravity(const msr_plan *plan) {
   double g = 0;
   for (size_t i = 0; i < plan->n_terms; i++)
     if (plan->term[i].force == &msr_force_gravity)
       g += ((const msr_gravity *)plan->term[i].params)->g;
-  return plan->uniform_mass * fabs(g) * (double)plan->figures.height / plan->mesh.lattice_k;
+  return fabs(g);
+}
+
+/* Weight times the height of the picture, per mass, over k L^2 of its springs: how far a fall can
+ * crush them. */
+static double crush(const msr_plan *plan) {
+  const double weight = plan->uniform_mass * msri_plan_gravity(plan);
+  return weight * (double)plan->figures.height / plan->mesh.lattice_k;
 }
 
 /* At the limit rounding is enough to make a mode grow. Where impacts excite every mode, a lattice
