@@ -55,6 +55,10 @@ static void print_step(const msr_plan_figures *f) {
   label("step");
   printf("%.6g s: %" PRIu64 " substep%s per DT", f->h, f->substeps, f->substeps > 1 ? "s" : "");
   puts(f->integrator->adaptive ? ", divided as errors ask for" : "");
+  if (f->leaps) {
+    label("long steps");
+    printf("%s, implicit, wherever cheaper than the substeps that they span\n", f->leaps->name);
+  }
   if (f->integrator->adaptive) {
     label("tolerance");
     printf("%.3g px and px/s, and %.3g of the largest, a step\n", f->atol, f->rtol);

@@ -71,6 +71,14 @@ static void print_energy(const watch *w) {
           fabs(start) > 0 ? " %" : "");
 }
 
+static void print_leaps(const watch *w, const msr_state *state) {
+  const msr_work work = msr_state_work(state);
+  const double all = (double)w->plan.iterations * (double)w->plan.substeps;
+  if (!w->plan.leaps) return;
+  fprintf(stderr, ", %" PRIu64 " long steps (%s) for %.3g %% of the substeps", work.leaps,
+          w->plan.leaps->name, 100 * (double)work.leapt / all);
+}
+
 /* The guard lets a run heat much further before it ends it. */
 static void warn_of_heating(const watch *w, double gain) {
   char text[160];
@@ -90,6 +98,7 @@ void watch_print_summary(const watch *w, const msr_state *state) {
   fprintf(stderr, ": %.6g s simulated in ", w->plan.dt * (double)w->plan.iterations);
   fprintf(stderr, took < 10 ? "%.2g s" : "%.0f s", took);
   if (w->s->verbose) print_energy(w);
+  if (w->s->verbose) print_leaps(w, state);
   fputs("\n", stderr);
   warn_of_heating(w, msr_state_energy_gain(state));
 }

@@ -284,12 +284,21 @@ typedef struct msr_system {
    * anchors, made positive; other forces count as constant, which converges while c times their
    * own -da/dq is below 1); a closer one takes fewer iterations. `from`, near q, is where the
    * iteration was before, or begins: to take tensions as they would be if they had changed linearly
-   * since lets it converge in as few where springs are stiff. */
+   * since lets it converge in as few where springs are stiff. Of coordinates that are held [n]
+   * (NULL: none is) the rows and columns of A are those of 1. */
   msr_status (*linearise)(void *self, double t, const double *q0, const double *from,
-                          const double *q, double c);
+                          const double *q, double c, const bool *held);
   /* x[n] with |A x - r| <= tolerance |x|, or as near as rounding allows. Both NULL: implicit
    * methods take differences of a. */
   msr_status (*solve)(void *self, const double *r, double tolerance, double *x);
+  /* Marks in held [n] the coordinates that something in the way stops between q0 and q, beside
+   * those that are marked, which don't move; `more` tells whether there are any. A coordinate that
+   * is held does no work and has its velocity reversed, by a step of energy-momentum, so that the
+   * energy is kept through elastic impacts at any step. NULL: nothing is in the way. */
+  msr_status (*hold)(void *self, const double *q0, const double *q, bool *held, bool *more);
+  /* What impacts that aren't elastic make of v after a step in which coordinates were held; push
+   * [n] is the change of velocity that holding each of them took. NULL: nothing. */
+  msr_status (*rebound)(void *self, const bool *held, const double *push, double *v);
   /* Adaptive methods take a step back if its estimated error is larger than atol + rtol |q| in q,
    * or atol + rtol |v| in v with times in seconds, |.| being the largest coordinate. An rtol of 10
    * DBL_EPSILON, for rounding, is the least, whatever is asked for. Both finite, 0 or more, or
@@ -339,6 +348,7 @@ typedef struct msr_integrator {
   bool bounces;          /* sees to what is in the way itself: moves q by msr_system_drift alone, or
                           * calls bounce(); else the library does after each step, and it does
                           * where impacts are located and the method is adaptive */
+  bool holds;            /* calls hold(), where the system has it, instead */
   bool implicit;         /* solves equations: evaluations are as many as that takes */
   bool adaptive;         /* chooses its own steps within the interval, by atol and rtol */
   bool remembers;        /* more than (t, q, v): a copy of the state or a saved one begins anew, and
@@ -508,7 +518,11 @@ typedef enum msr_impacts {
 } msr_impacts;
 
 typedef struct msr_plan_options {
-  const msr_integrator *integrator; /* NULL: Verlet */
+  const msr_integrator *integrator; /* NULL: Verlet and, if substeps is 0 and an iteration takes
+                                     * hundreds, steps of energy-momentum as long as many substeps
+                                     * wherever they cost less; tries that fail add a quarter of the
+                                     * substeps' cost at most, in counted work. With located
+                                     * impacts, only where nothing can be hit */
   uint64_t substeps; /* steps per iteration; 0: as many as keep below the safe step */
   double atol, rtol; /* of adaptive methods, as in msr_system: the error of a step is up to
                       * atol + rtol |q| [px] in x and y and atol + rtol |v| [px/s] in vx and vy; an
@@ -548,6 +562,7 @@ typedef struct msr_plan_figures {
   size_t width, height; /* of the picture [px]; 0: the scene has none */
   size_t supports;      /* black pixels */
   const msr_integrator *integrator;
+  const msr_integrator *leaps; /* takes long steps where they cost less than substeps; NULL: none */
   msr_impacts impacts;
   uint64_t iterations, images, substeps;
   double atol, rtol;  /* of adaptive methods */
@@ -640,6 +655,8 @@ MSR_API uint64_t msr_state_contacts(const msr_state *state);
  * in search of it included, and evaluations of the acceleration. */
 typedef struct msr_work {
   uint64_t steps, evaluations;
+  uint64_t leaps, leapt; /* long steps (figures.leaps) among them, and the substeps that they took
+                          * the place of */
 } msr_work;
 MSR_API msr_work msr_state_work(const msr_state *state);
 

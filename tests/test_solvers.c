@@ -159,7 +159,7 @@ static void check_solution(world *w, const place *at, uint64_t *dice) {
   const double tolerance = 1e-9, most = tolerance + 1000 * DBL_EPSILON * (1 + at->c * 100 / 0.1);
   double r[64], x[64], expected[64];
   scatter(2 * s.n, dice, 1, NULL, r);
-  must(system.linearise(system.self, 0, at->q0, at->from, at->q, at->c));
+  must(system.linearise(system.self, 0, at->q0, at->from, at->q, at->c, NULL));
   must(system.solve(system.self, r, tolerance, x));
   gsl_matrix *A = dense(&s, at, w->state->stiffness.least);
   solve_densely(A, &s, r, expected);
@@ -221,7 +221,7 @@ static void the_matrix_is_the_derivative(void **state) {
       scatter(2 * s.n, &dice, 1, NULL, x);
       differ(&system, s.x, x, mean, y);
       for (size_t i = 0; i < 2 * s.n; i++) y[i] = x[i] - (mean ? 2 : 1) * c * y[i];
-      must(system.linearise(system.self, 0, mean ? s.x : NULL, s.x, s.x, c));
+      must(system.linearise(system.self, 0, mean ? s.x : NULL, s.x, s.x, c, NULL));
       must(system.solve(system.self, y, 1e-13, solution));
       assert_true(distance(2 * s.n, x, solution) < 3e-12);
     }
@@ -256,7 +256,7 @@ static void factors_of_a_turned_lattice_are_exact(void **state) {
     double r[2 * N], x[2 * N], z[2 * N];
     msri_vector b[N], y[N];
     scatter(2 * N, &dice, 1, NULL, r);
-    msri_stiffness_linearise(a, NULL, s.x, s.x, 1e8 * 0.1 / 1500);
+    msri_stiffness_linearise(a, NULL, s.x, s.x, 1e8 * 0.1 / 1500, NULL);
     must(msri_stiffness_solve(a, r, 1e-9, x));
     for (size_t i = 0; i < N; i++) b[i] = (msri_vector){0.1 * r[i], 0.1 * r[N + i]};
     msri_stiffness_precondition(a, b, y);
@@ -279,7 +279,7 @@ static void stiff_beyond_rounding_is_told(void **state) {
   for (size_t i = 0; i < 2 * N; i++) r[i] = i < N ? 1 : -2;
   for (double c = 1; c < 1e25; c *= 100) {
     const double ratio = c * 1500 / 0.1;
-    msri_stiffness_linearise(&w.state->stiffness, NULL, s.x, s.x, c);
+    msri_stiffness_linearise(&w.state->stiffness, NULL, s.x, s.x, c, NULL);
     const msr_status status = msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x);
     if (ratio < 1e13) assert_true(distance(2 * N, x, r) < 1e-6 + ratio * DBL_EPSILON);
     assert_int_equal(status, ratio < 1e13 ? MSR_OK : MSR_EUNSTABLE);
@@ -294,11 +294,11 @@ static void nonsense_is_told(void **state) {
   double r[2 * 12 * 9] = {1}, x[2 * 12 * 9];
   const double odd[] = {NO_NUMBER, INFINITE, 1e300};
   for (size_t i = 0; i < LENGTH(odd); i++) {
-    msri_stiffness_linearise(&w.state->stiffness, NULL, s.x, s.x, odd[i]);
+    msri_stiffness_linearise(&w.state->stiffness, NULL, s.x, s.x, odd[i], NULL);
     assert_int_equal(msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x), MSR_EUNSTABLE);
   }
   r[0] = NO_NUMBER;
-  msri_stiffness_linearise(&w.state->stiffness, NULL, s.x, s.x, 1);
+  msri_stiffness_linearise(&w.state->stiffness, NULL, s.x, s.x, 1, NULL);
   assert_int_equal(msri_stiffness_solve(&w.state->stiffness, r, 1e-6, x), MSR_EUNSTABLE);
   /* The corner takes its row of 12 along, stretching it by some m / (c k) = 1e-4 times 12^2 / 3;
    * r goes down to what is no normal number. */

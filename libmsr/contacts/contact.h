@@ -29,6 +29,12 @@ typedef struct msri_contact {
    * velocity at the end, and has no half kick to come. */
   uint64_t (*bounce)(const void *self, size_t n, double h, const double *q0, const double *v0,
                      double *q, double *v, double *owed);
+  /* As hold of msr_system: marks what would be stopped between q0 and q; tells whether it did.
+   * NULL: that isn't how this contact works. */
+  bool (*hold)(const void *self, size_t n, const double *q0, const double *q, bool *held);
+  /* As rebound of msr_system, v being what elastic impacts leave. Returns the number of collisions.
+   */
+  uint64_t (*rebound)(const void *self, size_t n, const bool *held, const double *push, double *v);
   /* For a method that is to end its step at the first impact; NULL: none is. */
   void (*meet)(const void *self, size_t n, double h, const double *q0, const double *v0,
                const double *q, const double *v, msri_meeting *meeting);

@@ -154,4 +154,39 @@ static uint64_t bounce(const void *self, size_t n, double h, const double *q0, c
   return collisions;
 }
 
-const msri_contact msri_impacts_kept = {.drift = drift, .bounce = bounce};
+/* ---- For steps that know what they hold */
+
+static bool hold(const void *self, size_t n, const double *q0, const double *q, bool *held) {
+  bool more = false;
+  for (size_t i = 0, j = n; i < n; i++, j++) {
+    const double x = q0[i], y = q0[j];
+    const bool x_stops = !held[i] && floor(q[i]) != floor(x) && blocked(self, x, q[i], y, true);
+    const double at = x_stops ? x : q[i];
+    const bool y_stops = !held[j] && floor(q[j]) != floor(y) && blocked(self, y, q[j], at, false);
+    held[i] |= x_stops, held[j] |= y_stops;
+    more |= x_stops || y_stops;
+  }
+  return more;
+}
+
+/* Along one axis: the normal speed, reversed already, and friction on the other one. */
+static void slow(const msri_supports *s, double push, double *normal, double *along) {
+  const double before = *normal;
+  *normal *= s->options.restitution;
+  const double most = s->options.friction * fabs(push + *normal - before);
+  *along = fabs(*along) > most ? *along - copysign(most, *along) : 0;
+}
+
+static uint64_t rebound(const void *self, size_t n, const bool *held, const double *push,
+                        double *v) {
+  uint64_t collisions = 0;
+  for (size_t i = 0, j = n; i < n; i++, j++) {
+    if (held[i]) slow(self, push[i], &v[i], &v[j]);
+    if (held[j]) slow(self, push[j], &v[j], &v[i]);
+    collisions += held[i] + held[j];
+  }
+  return collisions;
+}
+
+const msri_contact msri_impacts_kept = {
+    .drift = drift, .bounce = bounce, .hold = hold, .rebound = rebound};

@@ -42,6 +42,8 @@ static msr_status multiply(const krylov *k, const double *x, double *y) {
   const msr_status status = msri_stage_acceleration(k->stage, k->place, y);
   const double w = k->stage->weight / e;
   for (size_t i = 0; i < k->n; i++) y[i] = x[i] - w * (y[i] - k->middle[i]);
+  for (size_t i = 0; k->stage->held && i < k->n; i++)
+    if (k->stage->held[i]) y[i] = x[i];
   return status;
 }
 

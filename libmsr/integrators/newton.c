@@ -52,12 +52,20 @@ static msr_status solve(newton *s, int k) {
   } else {
     status =
         system->linearise(system->self, e->t, e->between ? e->q0 : NULL, k > 0 ? s->before : e->q0,
-                          s->q, e->between ? e->weight / 2 : e->weight);
+                          s->q, e->between ? e->weight / 2 : e->weight, e->held);
     if (status == MSR_OK) status = system->solve(system->self, s->residual, tolerance, s->p);
   }
   s->size_before = s->size;
   s->size = status == MSR_EUNSTABLE ? (double)NAN : msri_largest(system->n, s->p);
   return status;
+}
+
+/* Takes what is held out of the equations. */
+static void hold(const msri_stage *e, double *r) {
+  for (size_t i = 0; e->held && i < e->system->n; i++) {
+    e->push[i] = e->held[i] ? r[i] : 0;
+    if (e->held[i]) r[i] = 0;
+  }
 }
 
 /* The residual at q = q0 + d, and the correction. */
@@ -68,6 +76,7 @@ static msr_status correct(newton *s, int k) {
   const msr_status status = msri_stage_acceleration(e, s->q, r);
   if (status != MSR_OK) return status;
   for (size_t i = 0; i < e->system->n; i++) r[i] = s->q[i] - q0[i] - known[i] - e->weight * r[i];
+  hold(e, r);
   if (isfinite(msri_largest(e->system->n, r))) return solve(s, k);
   s->size = (double)NAN;
   return MSR_OK;

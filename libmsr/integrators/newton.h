@@ -5,13 +5,16 @@
 #include "base/base.h"
 
 /* d = known + weight a(t, q0 + d) for the displacement d [n] of a stage or, if `between`, with the
- * mean acceleration from q0 to q0 + d. v0 is for systems without damp(). */
+ * mean acceleration from q0 to q0 + d. v0 is for systems without damp(). Where held [n] is true
+ * (NULL: nowhere) d is 0 as it was, and push [n] becomes what is missing, -known - weight a. */
 typedef struct msri_stage {
   const msr_system *system;
   double t;
   const double *q0, *v0, *known;
   double weight;
   bool between;
+  const bool *held;
+  double *push;
 } msri_stage;
 
 enum { MSRI_NEWTON_VECTORS = 5 };

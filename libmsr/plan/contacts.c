@@ -5,6 +5,7 @@
  * when it asks for it next. */
 #include "plan/state.h"
 
+#include <math.h>
 #include <string.h>
 
 /* Contacts are the effects that are on after the terms. */
@@ -73,4 +74,22 @@ void msri_state_strike(msr_state *state) {
   const msri_contact *contact = &state->plan->contact;
   const size_t n = state->plan->figures.masses;
   count(state, contact->strike(contact->self, n, state->before, state->q, state->v));
+}
+
+msr_status msri_state_hold(void *self, const double *q0, const double *q, bool *held, bool *more) {
+  const msr_state *state = self;
+  const msri_contact *contact = &state->plan->contact;
+  const size_t n = state->plan->figures.masses;
+  *more = contact->hold(contact->self, n, q0, q, held);
+  if (!*more || !state->effort.limited) return MSR_OK;
+  for (size_t i = 0; i < 2 * n; i++)
+    if (held[i] && !(fabs(q[i] - q0[i]) <= state->plan->leaping.reach)) return MSR_EUNSTABLE;
+  return MSR_OK;
+}
+
+msr_status msri_state_rebound(void *self, const bool *held, const double *push, double *v) {
+  msr_state *state = self;
+  const msri_contact *contact = &state->plan->contact;
+  count(state, contact->rebound(contact->self, state->plan->figures.masses, held, push, v));
+  return MSR_OK;
 }

@@ -12,14 +12,19 @@
 
 static const double crushing = 0.15;
 
-/* Weight times the height of the picture, per mass, over k L^2 of its springs: how far a fall can
- * crush them. */
-static double by_fall(const msr_plan *plan) {
+double msri_plan_gravity(const msr_plan *plan) {
   double g = 0;
   for (size_t i = 0; i < plan->n_terms; i++)
     if (plan->term[i].force == &msr_force_gravity)
       g += ((const msr_gravity *)plan->term[i].params)->g;
-  return plan->uniform_mass * fabs(g) * (double)plan->figures.height / plan->mesh.lattice_k;
+  return fabs(g);
+}
+
+/* Weight times the height of the picture, per mass, over k L^2 of its springs: how far a fall can
+ * crush them. */
+static double by_fall(const msr_plan *plan) {
+  const double weight = plan->uniform_mass * msri_plan_gravity(plan);
+  return weight * (double)plan->figures.height / plan->mesh.lattice_k;
 }
 
 /* k L^2 of a run's springs, and added to `crushed` what they can give to pass through each other:

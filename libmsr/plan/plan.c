@@ -166,8 +166,10 @@ static void count_memory(msr_plan *plan) {
   f->state_bytes = msri_state_bytes(plan);
 }
 
-static msr_status compile(msr_plan *plan, const msr_scene *scene, uint64_t substeps,
+static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan_options *options,
                           msr_error *err) {
+  const uint64_t substeps = options->substeps;
+  const bool automatic = !options->integrator && substeps == 0;
   msr_status status = scene->picture ? copy_picture(plan, scene->picture, err) : MSR_OK;
   if (status == MSR_OK) status = copy_masses(plan, scene, err);
   if (status == MSR_OK) status = msri_mesh_create(scene, &plan->mesh, err);
@@ -185,6 +187,7 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, uint64_t subst
   const msr_view start = msri_plan_view(plan, 0, q, v);
   status = call_for_effects(plan, scene, &start, err);
   if (status == MSR_OK) status = msri_plan_choose_step(plan, &start, substeps, err);
+  if (status == MSR_OK && automatic) status = msri_plan_choose_leaps(plan, err);
   free(q);
   count_memory(plan);
   return status;
@@ -214,7 +217,7 @@ msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *optio
                                      .impacts = options->impacts,
                                      .atol = tolerance.atol,
                                      .rtol = tolerance.rtol};
-  status = compile(made, scene, options->substeps, err);
+  status = compile(made, scene, options, err);
   if (status == MSR_OK)
     *plan = made;
   else

@@ -32,6 +32,16 @@ typedef struct msri_mesh {
   size_t run_capacity, anchor_capacity;
 } msri_mesh;
 
+/* Long implicit steps in place of substeps; costs are in evaluations of the acceleration. */
+typedef struct msri_leaping {
+  const msr_integrator *method; /* NULL: none */
+  double substep;               /* cost of one */
+  double least;                 /* cost of the cheapest leap */
+  double share;                 /* of the cost of all substeps that may be spent in vain */
+  double reach;                 /* how far what meets something may be from it [px] */
+  uint64_t leg;                 /* substeps: a leap lies between two multiples of it */
+} msri_leaping;
+
 struct msr_plan {
   msr_plan_figures figures;
   size_t n_picture;
@@ -51,6 +61,7 @@ struct msr_plan {
   msr_effect *effect;   /* [n_effects]; the first n_terms are the terms */
   char (*reason)[MSR_MESSAGE_SIZE]; /* of the effects */
   size_t n_effects;
+  msri_leaping leaping;
   msri_notes notes;
 };
 
@@ -67,7 +78,7 @@ static inline bool msri_force_drives(const msr_force *force) {
  * do so after each of its own, but impacts are better located by its dense steps. */
 static inline bool msri_plan_bounces(const msr_plan *plan) {
   const msr_integrator *integrator = plan->figures.integrator;
-  if (!plan->contact.bounce) return false;
+  if (!plan->contact.bounce || (integrator->holds && plan->contact.hold)) return false;
   return !integrator->bounces || (integrator->adaptive && plan->contact.meet);
 }
 
@@ -107,5 +118,11 @@ double msri_plan_safe_share(const msr_plan *plan, const msr_view *start);
 /* Fills the stable step and the substeps in the figures, and what the user should know of them. */
 msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t substeps,
                                  msr_error *err);
+
+/* Size of the acceleration by gravity [px/s^2]. */
+double msri_plan_gravity(const msr_plan *plan);
+
+/* Lets the plan leap if that may cost less than its substeps, and says so. */
+msr_status msri_plan_choose_leaps(msr_plan *plan, msr_error *err);
 
 #endif

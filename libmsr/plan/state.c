@@ -14,7 +14,8 @@ enum { ALIGNMENT = 64 };
 
 /* Where each array lies after the block's first aligned byte; `end` is after the last. */
 typedef struct layout {
-  size_t solver, q, v, work, before, owed, ahead, middle, between, drive, scratch, calls, end;
+  size_t solver, q, v, work, before, owed, ahead, middle, between, drive, scratch, calls, start,
+      leap, end;
 } layout;
 
 static size_t reserve(size_t *end, size_t bytes) {
@@ -43,6 +44,8 @@ static layout lay_out(const msr_plan *plan) {
   l.between = reserve(&end, plan->middle ? 2 * vector : 0);
   l.drive = reserve(&end, plan->driven ? vector : 0);
   l.scratch = reserve(&end, plan->scratch_bytes);
+  l.start = reserve(&end, plan->leaping.method ? 4 * vector : 0);
+  l.leap = reserve(&end, plan->leaping.method ? plan->leaping.method->vectors * vector : 0);
   l.calls = reserve(&end, plan->n_effects * sizeof(uint64_t));
   l.end = end;
   return l;
@@ -73,6 +76,9 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .before = (void *)(arrays + l.before),
       .owed = msri_plan_settles(plan) ? (void *)(arrays + l.owed) : NULL,
       .ahead = (void *)(arrays + l.ahead),
+      .leap = {.start = (void *)(arrays + l.start),
+               .before = (void *)(arrays + l.start + 4 * plan->figures.masses * sizeof(double)),
+               .vector = (void *)(arrays + l.leap)},
       .middle = (void *)(arrays + l.middle),
       .between = (void *)(arrays + l.between),
       .drive = (void *)(arrays + l.drive),
@@ -115,6 +121,8 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
   to->contacts = from->contacts;
   to->evaluations = from->evaluations;
   to->work.steps = from->work.steps;
+  to->leap.leaps = from->leap.leaps;
+  to->leap.leapt = from->leap.leapt;
   to->frames = from->frames;
   to->guard = from->guard;
   memcpy(to->q, from->q, l.end - l.q);
@@ -160,7 +168,7 @@ uint64_t msr_state_iteration(const msr_state *state) { return state->iteration; 
 uint64_t msr_state_contacts(const msr_state *state) { return state->contacts; }
 
 msr_work msr_state_work(const msr_state *state) {
-  return (msr_work){state->work.steps, state->evaluations};
+  return (msr_work){state->work.steps, state->evaluations, state->leap.leaps, state->leap.leapt};
 }
 
 uint64_t msr_state_calls(const msr_state *state, size_t effect) {

@@ -21,6 +21,20 @@ typedef struct msri_known {
   double t;
 } msri_known;
 
+/* What implicit steps cost, in evaluations of the acceleration; the limit holds if `limited`. */
+typedef struct msri_effort {
+  bool limited;
+  double spent, limit;
+  unsigned evaluations; /* of the mean force */
+} msri_effort;
+
+/* See run/leap.c. */
+typedef struct msri_leap_memory {
+  double *start, *before; /* [4n]: q, v where the iteration began, and before a leap */
+  double *vector;         /* of the method: [vectors][2n] */
+  uint64_t leaps, leapt;  /* so far; and substeps that they took the place of */
+} msri_leap_memory;
+
 struct msr_state {
   const msr_plan *plan;
   uint64_t iteration, substep; /* done; substeps of the iteration that is under way */
@@ -35,6 +49,8 @@ struct msr_state {
   double *owed;       /* [2n] if the plan settles: see contacts.c; else NULL */
   double *ahead;      /* [2n] likewise: the acceleration at the end of a step */
   msri_known known;
+  msri_effort effort;
+  msri_leap_memory leap;    /* if plan->leaping.method */
   double *middle;           /* [4n] if plan->midpoint: force, velocity */
   double *between;          /* [4n] if plan->middle: the middle, force */
   double *drive;            /* [2n] if plan->driven: driving forces */
@@ -77,6 +93,10 @@ msr_status msri_state_drift(void *self, double h, const double *u, const double 
                             double *v);
 msr_status msri_state_bounce(void *self, double h, const double *q0, const double *v0, double *q,
                              double *v, bool *met);
+
+/* hold and rebound of the system. */
+msr_status msri_state_hold(void *self, const double *q0, const double *q, bool *held, bool *more);
+msr_status msri_state_rebound(void *self, const bool *held, const double *push, double *v);
 
 /* meet and strike of the contact, from state->before to q and v. */
 void msri_state_meet(msr_state *state, double h, msri_meeting *meeting);

@@ -49,11 +49,11 @@ static double power(const msr_state *state) {
   return sum;
 }
 
-msr_status msri_guard_follow(msr_state *state) {
+msr_status msri_guard_follow(msr_state *state, double h) {
   if (!state->plan->driven) return MSR_OK;
   const double before = power(state);
   const msr_status status = find_drive(state);
-  state->guard.work += state->plan->figures.h * msri_max(before, power(state));
+  state->guard.work += h * msri_max(before, power(state));
   return status;
 }
 

@@ -10,7 +10,7 @@ enum { MSRI_GUARD_PERIOD = 32 };
 /* Takes the state as the start, if it has none. */
 msr_status msri_guard_begin(msr_state *state, msr_error *err);
 
-/* Adds what driving forces have done in the last substep. What a force returns. */
-msr_status msri_guard_follow(msr_state *state);
+/* Adds what driving forces have done in the last step, of h. What a force returns. */
+msr_status msri_guard_follow(msr_state *state, double h);
 
 #endif

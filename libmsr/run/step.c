@@ -4,6 +4,7 @@
 
 #include "run/guard.h"
 #include "run/impacts.h"
+#include "run/leap.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -89,7 +90,7 @@ static msr_status substep(msr_state *state, const msr_system *system, msr_error 
   const msr_status status = step(state, system, &interval, err);
   if (status != MSR_OK) return status;
   state->substep++;
-  return msri_guard_follow(state);
+  return msri_guard_follow(state, f->h);
 }
 
 /* One iteration, or what is left of the one that was cut short. */
@@ -97,8 +98,10 @@ static msr_status iterate(msr_state *state, const msr_system *system, const msri
                           msr_error *err) {
   msr_status status = MSR_OK;
   while (state->substep < state->plan->figures.substeps && status == MSR_OK) {
+    const uint64_t before = state->substep;
     if (poll->call) status = poll->call(poll->data, state);
-    if (status == MSR_OK) status = substep(state, system, err);
+    if (status == MSR_OK && msri_leaps(state)) status = msri_leap(state, system, poll);
+    if (status == MSR_OK && state->substep == before) status = substep(state, system, err);
   }
   if (status != MSR_OK) return status;
   state->substep = 0;

@@ -34,12 +34,21 @@ static msri_block in_a_row(msri_square l, msri_block d, msri_block s) {
                       l.yx * xy + l.yy * yy};
 }
 
+/* What is held is as heavy as numbers allow: it moves by nothing that counts. */
+static msri_block pivot_of(const msri_stiffness *a, size_t i, msri_block d) {
+  const double heavy = 1e40 * (d.xx + d.yy);
+  if (a->held && a->held[i]) d.xx += heavy;
+  if (a->held && a->held[a->graph->n + i]) d.yy += heavy;
+  return d;
+}
+
 void msri_stiffness_factorise(msri_stiffness *a) {
   const uint32_t *begin = a->graph->begin, *end = a->graph->end;
   start_pivots(a);
   for (size_t i = 0; i < a->graph->n; i++) {
     msri_block d = a->pivot[i];
     for (size_t p = begin[i]; p < begin[i + 1]; p++) d = msri_block_sum(d, a->tie[p]);
+    d = pivot_of(a, i, d);
     const msri_block inverse = invert(d);
     for (size_t p = begin[i]; p < begin[i + 1]; p++) {
       msri_block *pivot = &a->pivot[end[p]];
@@ -64,7 +73,7 @@ double msri_stiffness_precondition(const msri_stiffness *a, const msri_vector *r
     msri_vector y = msri_block_times(a->pivot[i], z[i]);
     for (size_t p = begin[i]; p < begin[i + 1]; p++)
       y = msri_sum(y, msri_square_times_from_left(a->lower[p], z[end[p]]));
-    z[i] = y;
+    z[i] = y = msri_stiffness_loose(a, i, y);
     rz += msri_product(r[i], y);
   }
   return rz;

@@ -8,14 +8,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_ITERATIONS = 5000 };
-
 /* x = 0, residual = M r / size: of order 1, so that no square of it is lost. */
 static void start(msri_stiffness *a, const double *r, double size) {
   const size_t n = a->graph->n;
   for (size_t i = 0; i < n; i++) {
     const double m = a->m[i * a->m_stride] / size;
-    a->residual[i] = (msri_vector){m * r[i], m * r[n + i]};
+    a->residual[i] = msri_stiffness_loose(a, i, (msri_vector){m * r[i], m * r[n + i]});
   }
   memset(a->x, 0, n * sizeof *a->x);
 }
@@ -43,7 +41,7 @@ static double multiply(const msri_stiffness *a, const msri_vector *p, msri_vecto
       sum = msri_sum(sum, f);
       y[j] = (msri_vector){y[j].x - f.x, y[j].y - f.y};
     }
-    y[i] = sum;
+    y[i] = sum = msri_stiffness_loose(a, i, sum);
     py += msri_product(pi, sum);
   }
   return py;
@@ -74,7 +72,7 @@ static msr_status iterate(msri_stiffness *a, double tolerance) {
   const size_t n = a->graph->n;
   double rz = msri_stiffness_precondition(a, a->residual, a->image), error = (double)INFINITY;
   memcpy(a->direction, a->image, n * sizeof *a->direction);
-  for (int k = 0; k < MOST_ITERATIONS; k++) {
+  for (int k = 0; k < a->most; k++) {
     const double curvature = multiply(a, a->direction, a->image);
     a->iterations++;
     if (!(rz > 0 && curvature > 0)) break;
@@ -95,5 +93,7 @@ msr_status msri_stiffness_solve(msri_stiffness *a, const double *r, double toler
   const msr_status status = size > DBL_MIN ? iterate(a, tolerance) : MSR_OK;
   for (size_t i = 0; i < n; i++) x[i] = size * a->x[i].x;
   for (size_t i = 0; i < n; i++) x[n + i] = size * a->x[i].y;
+  for (size_t i = 0; a->held && i < 2 * n; i++)
+    if (a->held[i]) x[i] = r[i];
   return status;
 }

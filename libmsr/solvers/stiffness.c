@@ -45,8 +45,12 @@ static double spare(const msr_view *s, double *degree) {
 }
 
 msri_stiffness msri_stiffness_place(const msri_graph *graph, const msr_view *s, void *memory) {
-  msri_stiffness a = {
-      .graph = graph, .springs = s->springs, .m = s->m, .m_stride = s->m_stride, .x = memory};
+  msri_stiffness a = {.graph = graph,
+                      .springs = s->springs,
+                      .m = s->m,
+                      .m_stride = s->m_stride,
+                      .most = MSRI_MOST_ITERATIONS,
+                      .x = memory};
   a.residual = a.x + s->n;
   a.direction = a.residual + s->n;
   a.image = a.direction + s->n;
@@ -186,7 +190,7 @@ static msri_block stiffness_of_anchor(const msri_stiffness *a, const place *at,
 static msr_view view_of(const double *q, size_t n) { return (msr_view){.x = q, .y = q + n}; }
 
 void msri_stiffness_linearise(msri_stiffness *a, const double *q0, const double *from,
-                              const double *q, double c) {
+                              const double *q, double c, const bool *held) {
   const size_t masses = a->graph->n;
   const place at = {.start = view_of(q0 ? q0 : q, masses),
                     .from = view_of(from, masses),
@@ -195,6 +199,7 @@ void msri_stiffness_linearise(msri_stiffness *a, const double *q0, const double 
                     .c = c};
   const msr_springs *springs = a->springs;
   const uint32_t *pair = a->graph->pair;
+  a->held = held;
   memset(a->tie, 0, a->graph->pairs * sizeof *a->tie);
   for (size_t r = 0; r < springs->n_runs; r++) {
     const msr_run_of_springs *run = &springs->run[r];

@@ -1,0 +1,118 @@
+/* leap.c - long implicit steps in place of many substeps, where they cost less.
+ *
+ * A leg, an iteration or a part of it, is first tried as one step of the energy-momentum method,
+ * which keeps the energy through elastic impacts at any length. What fails is tried again at half
+ * its length; substeps do what is left. Costs are counted, in evaluations of the acceleration,
+ * never timed: tries may spend a quarter of what the substeps of the leg would cost, and what leaps
+ * have saved of that so far. So a leg costs at most 1.25 times as much as its substeps.
+ *
+ * Nothing is remembered from one leg to the next, so that a run that is cut or saved has the same
+ * bits. */
+#include "run/leap.h"
+
+#include "run/guard.h"
+
+#include <string.h>
+
+/* A leap under way is a number of substeps. */
+typedef struct course {
+  msr_state *state;
+  const msr_system *system;
+  const msri_leaping *plan;
+  uint64_t length;
+  double credit; /* evaluations that may be spent */
+} course;
+
+/* From the state to where it is kept, and back. */
+static void keep(const msr_state *state, double *kept) {
+  const size_t n = 2 * state->plan->figures.masses;
+  memcpy(kept, state->q, n * sizeof *kept);
+  memcpy(kept + n, state->v, n * sizeof *kept);
+}
+
+static void restore(msr_state *state, const double *kept) {
+  const size_t n = 2 * state->plan->figures.masses;
+  memcpy(state->q, kept, n * sizeof *kept);
+  memcpy(state->v, kept + n, n * sizeof *kept);
+}
+
+/* One leap. MSR_EUNSTABLE if it can't be made, and the state is as before. */
+static msr_status try(course *c) {
+  msr_state *state = c->state;
+  const msr_plan_figures *f = &state->plan->figures;
+  const msr_integrator *method = c->plan->method;
+  const msr_interval interval = {msri_state_time(state), (double)c->length * f->h,
+                                 msri_plan_time(f, state->iteration, state->substep + c->length)};
+  double *before = state->leap.before;
+  keep(state, before);
+  state->effort = (msri_effort){.limited = true, .limit = c->credit};
+  msr_workspace work = {.vector = state->leap.vector};
+  const msr_status status =
+      method->step(method, c->system, &interval, state->q, state->v, &work, NULL);
+  c->credit -= state->effort.spent;
+  if (status == MSR_OK) return MSR_OK;
+  restore(state, before);
+  if (status == MSR_EUNSTABLE) state->failed = NULL;
+  return status;
+}
+
+/* After a leap. */
+static msr_status land(course *c) {
+  enum { EASY = 8 };
+  msr_state *state = c->state;
+  state->fresh = false;
+  state->substep += c->length;
+  state->work.steps++;
+  state->leap.leaps++;
+  state->leap.leapt += c->length;
+  c->credit += c->plan->substep * (double)c->length;
+  const msr_status status = msri_guard_follow(state, (double)c->length * state->plan->figures.h);
+  if (state->effort.evaluations <= EASY) c->length *= 2;
+  return status;
+}
+
+/* Is a leap of that length worth a try? */
+static bool pays(const course *c) {
+  return c->credit > 0 && c->plan->substep * (double)c->length > c->plan->least;
+}
+
+static msr_status poll(course *c, const msri_poll *poll) {
+  return poll->call ? poll->call(poll->data, c->state) : MSR_OK;
+}
+
+/* Where a leg begins, so that a run that is interrupted goes on with the same bits. */
+typedef struct beginning {
+  uint64_t substep, contacts;
+} beginning;
+
+static void go_back(msr_state *state, const beginning *to) {
+  restore(state, state->leap.start);
+  state->fresh = false;
+  state->substep = to->substep;
+  state->contacts = to->contacts;
+}
+
+msr_status msri_leap(msr_state *state, const msr_system *system, const msri_poll *watch) {
+  const msri_leaping *plan = &state->plan->leaping;
+  const uint64_t left = state->plan->figures.substeps - state->substep;
+  const uint64_t leg = left < plan->leg ? left : plan->leg, end = state->substep + leg;
+  const beginning start = {state->substep, state->contacts};
+  course c = {state, system, plan, leg, plan->share * plan->substep * (double)leg};
+  msr_status status = MSR_OK;
+  keep(state, state->leap.start);
+  while (state->substep < end && status == MSR_OK) {
+    c.length = c.length < end - state->substep ? c.length : end - state->substep;
+    if (!pays(&c)) return MSR_OK;
+    status = poll(&c, watch);
+    if (status != MSR_OK) break;
+    status = try(&c);
+    if (status == MSR_OK) {
+      status = land(&c);
+    } else if (status == MSR_EUNSTABLE) {
+      c.length /= 2;
+      status = MSR_OK;
+    }
+  }
+  if (status != MSR_OK) go_back(state, &start);
+  return status;
+}

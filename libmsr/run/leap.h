@@ -1,0 +1,17 @@
+/* leap.h - long implicit steps in place of many substeps. */
+#ifndef MSRI_LEAP_H
+#define MSRI_LEAP_H
+
+#include "run/step.h"
+
+/* Does a leg begin here? */
+static inline bool msri_leaps(const msr_state *state) {
+  const msri_leaping *plan = &state->plan->leaping;
+  return plan->method && state->substep % plan->leg == 0;
+}
+
+/* As much of the leg that begins here as implicit steps do for less than its substeps. What poll or
+ * a force returns, other than MSR_OK, leaves the state where the leg began. */
+msr_status msri_leap(msr_state *state, const msr_system *system, const msri_poll *poll);
+
+#endif
