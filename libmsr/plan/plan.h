@@ -63,6 +63,11 @@ static inline bool msri_force_drives(const msr_force *force) {
   return !force->dissipative && (!force->conservative || force->uses_time);
 }
 
+/* Has it a potential that a fall or a push loses? */
+static inline bool msri_force_is_outer(const msr_force *force) {
+  return force->conservative && force != &msr_force_springs;
+}
+
 /* Does the library see to contacts after each step? Where the integrator doesn't, or where it would
  * do so after each of its own, but impacts are better located by its dense steps. */
 static inline bool msri_plan_bounces(const msr_plan *plan) {
@@ -96,6 +101,9 @@ msr_view msri_plan_view(const msr_plan *plan, double t, const double *q, const d
 
 /* "pixel (12,5)" or "mass 7": what a user calls a mass. Returns text. */
 const char *msri_plan_mass_name(const msr_plan *plan, size_t mass, char *text, size_t size);
+
+/* Stability limit of the explicit midpoint rule, which stands in for a flow that isn't given. */
+extern const double msri_midpoint_limit;
 
 /* Fills the stable step and the substeps in the figures, and what the user should know of them. */
 msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t substeps,

@@ -7,15 +7,14 @@
 
 #include <math.h>
 
-/* Stability limit of the explicit midpoint rule, which stands in for a flow that isn't given. */
-static const double midpoint_limit = 2;
+const double msri_midpoint_limit = 2;
 
 static const double most_substeps = 1e9;
 
 /* The integrator's limit of h gamma for a force. */
 static double damping_limit(const msr_integrator *integrator, const msr_force *force) {
   const double limit = integrator->damping_stability;
-  return integrator->splits && !force->flow ? msri_min(limit, midpoint_limit) : limit;
+  return integrator->splits && !force->flow ? msri_min(limit, msri_midpoint_limit) : limit;
 }
 
 /* `damping`: sum of gamma over its limit. */
