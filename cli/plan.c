@@ -63,8 +63,9 @@ static void print_step(const msr_plan_figures *f) {
   if (isinf(f->stable_step)) {
     puts("any");
   } else if (f->stable_step > 0) {
-    printf("%.4g s, at any stretch (Gershgorin); DT is %.3g %% of it; safe steps are up to %.4g s\n",
-           f->stable_step, 100 * f->dt / f->stable_step, f->safe_step);
+    printf(
+        "%.4g s, at any stretch (Gershgorin); DT is %.3g %% of it; safe steps are up to %.4g s\n",
+        f->stable_step, 100 * f->dt / f->stable_step, f->safe_step);
   } else {
     puts("none: this integrator heats whatever the step");
   }

@@ -202,6 +202,10 @@ typedef struct msr_force {
   /* Upper bounds at any stretch, for the stable step: of the largest eigenvalue of -dF/dx / m
    * [1/s^2], at v = 0, and of -dF/dv / m [1/s]; both are 0 on entry. */
   msr_status (*rates)(const void *self, const msr_view *s, double *omega2, double *gamma);
+  /* For what drives, neither dissipative nor conservative: the most power that it can give at s->t,
+   * whatever the velocities [kg px^2/s^3]; it may be called after every step. NULL: for the guard
+   * the library asks add() after every step. */
+  double (*power)(const void *self, void *scratch, const msr_view *s);
 } msr_force;
 
 /* F_ij = k (|x_ij| - L) x_ij / |x_ij|, 0 at |x_ij| = 0. Every scene has it: it can't be added. */
@@ -636,13 +640,14 @@ MSR_API msr_arrays msr_state_edit(msr_state *state);
 /* Iterations done. */
 MSR_API uint64_t msr_state_iteration(const msr_state *state);
 
-/* Advances by `iterations` of DT. The guard looks at the state every 32 iterations: MSR_EUNSTABLE
- * names the mass, the time and a step that is stable. Or what a force returns. */
+/* Advances by `iterations` of DT. The guard looks at speeds every 16 steps, and at all energies
+ * every 128: MSR_EUNSTABLE names the mass, its longest spring, the time and a step that is stable.
+ * Or what a force returns. */
 MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err);
 
-/* The guard: what a driving force returns, or MSR_EUNSTABLE if a number isn't finite or there is
- * far more kinetic and spring energy than the scene had to give: at the start, by what gravity and
- * pushes lost, by what wind did. */
+/* The guard: what a driving force returns, or MSR_EUNSTABLE if a number or an energy isn't finite
+ * or there is far more kinetic and spring energy than the scene had to give: at the start, by what
+ * gravity and pushes lost, by what wind did. */
 MSR_API msr_status msr_state_check(msr_state *state, msr_error *err);
 
 /* The most energy that has come from nowhere since the start, by the guard's looks, over what the

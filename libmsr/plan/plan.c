@@ -82,6 +82,7 @@ static msr_status add_term(msr_plan *plan, const msr_force *force, const void *p
   plan->midpoint |= force->uses_velocity && !force->flow;
   plan->middle |= plan->figures.integrator->implicit && !force->uses_velocity && !force->between;
   plan->driven |= msri_force_drives(force);
+  plan->followed |= msri_force_drives(force) && !force->power;
   msri_format(reason, MSR_MESSAGE_SIZE, "asked for");
   if (force->describe) force->describe(term->params, start, reason, MSR_MESSAGE_SIZE);
   return MSR_OK;

@@ -45,6 +45,7 @@ struct msr_plan {
   size_t scratch_bytes; /* of all terms */
   bool midpoint;        /* a force on v has no flow of its own: states have room for one */
   bool driven;          /* a force drives: states follow its work */
+  bool followed;        /* one of them doesn't tell its power: likewise, mass by mass */
   bool middle;          /* a force without between() acts in the middle of a step: likewise */
   msri_graph *graph;    /* of the springs, if the integrator is implicit */
   msri_contact contact; /* drift NULL: nothing is ever in the way */
@@ -108,5 +109,8 @@ extern const double msri_midpoint_limit;
 /* Fills the stable step and the substeps in the figures, and what the user should know of them. */
 msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t substeps,
                                  msr_error *err);
+
+/* The largest step that is safe with Verlet; DT if nothing limits it. */
+double msri_plan_verlet_step(const msr_plan *plan);
 
 #endif

@@ -29,6 +29,12 @@ static msr_status bound_rates(msr_plan *plan, const msr_view *start, double *dam
     if (status != MSR_OK)
       return msri_fail(err, status, "%s: no bound for the stable step: %s", term->force->name,
                        msr_status_text(status));
+    if (isinf(of_x) || isinf(of_v))
+      return msri_fail(
+          err, MSR_EINPUT,
+          "%s: stiffness or damping over mass is beyond the range of numbers, 1.8e308; "
+          "lower it, or raise MASSE",
+          term->force->name);
     if (!(of_x >= 0 && of_v >= 0))
       return msri_fail(err, MSR_EUSAGE,
                        "force %s: rates must be numbers of 0 or more, not %g and %g",
@@ -80,6 +86,11 @@ static double safe_step(const msr_plan *plan) {
   return safe_share(plan) * (any && follows ? resolved / f->omega : f->stable_step);
 }
 
+double msri_plan_verlet_step(const msr_plan *plan) {
+  const double omega = plan->figures.omega;
+  return omega > 0 ? safe_share(plan) * resolved / omega : plan->figures.dt;
+}
+
 /* The fewest equal steps of dt that are safe. */
 static double fewest(const msr_plan_figures *f) {
   const double rounding = 1e-12;
@@ -117,11 +128,21 @@ static msr_status explain(msr_plan *plan, bool automatic, msr_error *err) {
                         f->h > f->stable_step ? "explode" : "heat up and then explode", fewest(f));
 }
 
+/* Forces are multiplied by 1 / m. */
+static msr_status check_masses(const msr_view *s, msr_error *err) {
+  for (size_t i = 0; i < s->n; i++)
+    if (isinf(1 / msr_view_mass(s, i)))
+      return msri_fail(err, MSR_EINPUT, "a mass of %g kg is too small to divide by; raise MASSE",
+                       msr_view_mass(s, i));
+  return MSR_OK;
+}
+
 msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t substeps,
                                  msr_error *err) {
   msr_plan_figures *f = &plan->figures;
   double damping = 0;
-  const msr_status status = bound_rates(plan, start, &damping, err);
+  msr_status status = check_masses(start, err);
+  if (status == MSR_OK) status = bound_rates(plan, start, &damping, err);
   if (status != MSR_OK) return status;
   f->stable_step = stable_step(f, damping);
   f->safe_step = safe_step(plan);

@@ -41,7 +41,7 @@ static layout lay_out(const msr_plan *plan) {
   l.ahead = reserve(&end, msri_plan_settles(plan) ? vector : 0);
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
   l.between = reserve(&end, plan->middle ? 2 * vector : 0);
-  l.drive = reserve(&end, plan->driven ? vector : 0);
+  l.drive = reserve(&end, plan->followed ? vector : 0);
   l.scratch = reserve(&end, plan->scratch_bytes);
   l.calls = reserve(&end, plan->n_effects * sizeof(uint64_t));
   l.end = end;

@@ -13,6 +13,9 @@ typedef struct msri_guard {
   double lost;           /* the most that these have lost */
   double work;           /* bound of what driving forces have done since */
   double gain;           /* the most energy from nowhere, over what there was to give */
+  double power;          /* bound of what driving forces that tell of it do */
+  double most;           /* kinetic energy that calls for a closer look */
+  uint64_t looked;       /* steps at the last look at all energies */
 } msri_guard;
 
 /* Where state->ahead holds the acceleration, without what depends on v; q NULL: nowhere. */
@@ -37,11 +40,16 @@ struct msr_state {
   msri_known known;
   double *middle;           /* [4n] if plan->midpoint: force, velocity */
   double *between;          /* [4n] if plan->middle: the middle, force */
-  double *drive;            /* [2n] if plan->driven: driving forces */
+  double *drive;            /* [2n] if plan->followed: driving forces */
   char *scratch;            /* [plan->scratch_bytes] */
   uint64_t *calls;          /* [plan->n_effects] */
   msri_stiffness stiffness; /* if plan->graph */
 };
+
+/* Steps since t = 0, modulo 2^64. */
+static inline uint64_t msri_state_steps(const msr_state *state) {
+  return state->iteration * state->plan->figures.substeps + state->substep;
+}
 
 static inline double msri_state_time(const msr_state *state) {
   return msri_plan_time(&state->plan->figures, state->iteration, state->substep);

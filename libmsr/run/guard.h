@@ -4,13 +4,17 @@
 
 #include "plan/state.h"
 
-/* Iterations between two looks. */
-enum { MSRI_GUARD_PERIOD = 32 };
-
 /* Takes the state as the start, if it has none. */
 msr_status msri_guard_begin(msr_state *state, msr_error *err);
 
 /* Adds what driving forces have done in the last substep. What a force returns. */
 msr_status msri_guard_follow(msr_state *state);
+
+/* After a substep: looks at the state if it is time to. As msr_state_check. */
+msr_status msri_guard_watch(msr_state *state, msr_error *err);
+
+/* What to say of a state that can't be true: see guard_says.c. `ratio`: energy over what there was
+ * to give; NaN: a number or an energy isn't finite. */
+msr_status msri_guard_refuse(const msr_state *state, double ratio, msr_error *err);
 
 #endif

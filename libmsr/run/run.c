@@ -12,7 +12,7 @@ static msr_status give(const msr_sink *sink, const msr_state *state, uint64_t fr
 
 static msr_status deliver(msr_state *state, const msr_run_options *options, uint64_t frame,
                           msr_error *err) {
-  msr_status status = msr_state_check(state, err);
+  msr_status status = options->n_sinks > 0 ? msr_state_check(state, err) : MSR_OK;
   for (size_t s = 0; s < options->n_sinks && status == MSR_OK; s++)
     status = give(&options->sinks[s], state, frame, err);
   return status;

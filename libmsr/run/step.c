@@ -81,29 +81,18 @@ static msr_status step(msr_state *state, const msr_system *system, const msr_int
                                    : step_and_bounce(state, system, interval, err);
 }
 
-/* One substep. */
-static msr_status substep(msr_state *state, const msr_system *system, msr_error *err) {
+/* One substep; the last ends the iteration. */
+static msr_status substep(msr_state *state, const msr_system *system, const msri_poll *poll,
+                          msr_error *err) {
   const msr_plan_figures *f = &state->plan->figures;
   const msr_interval interval = {msri_state_time(state), f->h,
                                  msri_plan_time(f, state->iteration, state->substep + 1)};
-  const msr_status status = step(state, system, &interval, err);
+  msr_status status = poll->call ? poll->call(poll->data, state) : MSR_OK;
+  if (status == MSR_OK) status = step(state, system, &interval, err);
   if (status != MSR_OK) return status;
   state->substep++;
+  if (state->substep == f->substeps) state->substep = 0, state->iteration++;
   return msri_guard_follow(state);
-}
-
-/* One iteration, or what is left of the one that was cut short. */
-static msr_status iterate(msr_state *state, const msr_system *system, const msri_poll *poll,
-                          msr_error *err) {
-  msr_status status = MSR_OK;
-  while (state->substep < state->plan->figures.substeps && status == MSR_OK) {
-    if (poll->call) status = poll->call(poll->data, state);
-    if (status == MSR_OK) status = substep(state, system, err);
-  }
-  if (status != MSR_OK) return status;
-  state->substep = 0;
-  state->iteration++;
-  return MSR_OK;
 }
 
 /* Which iteration a status stopped, and why: what the integrator said, or which force it was. */
@@ -120,11 +109,11 @@ msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *pol
   state->failed = NULL;
   msr_status status = msri_guard_begin(state, err);
   if (status != MSR_OK) return status;
-  for (uint64_t i = 0; i < iterations; i++) {
+  for (const uint64_t begun = state->iteration; state->iteration - begun < iterations;) {
     msr_error said = {MSR_OK, ""};
-    status = iterate(state, &system, poll, &said);
+    status = substep(state, &system, poll, &said);
     if (status != MSR_OK) return explain(state, status, &said, err);
-    if (state->iteration % MSRI_GUARD_PERIOD == 0) status = msr_state_check(state, err);
+    status = msri_guard_watch(state, err);
     if (status != MSR_OK) return status;
   }
   return MSR_OK;
