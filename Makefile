@@ -255,6 +255,10 @@ $(BENCH_RHS): $(RHS_OBJ) $(BUILD)/libmsr.a
 bench-accuracy: $(BENCH) $(BENCH_RHS)
 	@$(BENCH) tests/bench/scipy_peer.py $(BENCH_RHS)
 
+## bench-guard: the guard's share of the instructions of runs, by valgrind; a minute
+bench-guard: $(BUILD)/msr
+	@sh tests/bench/guard.sh $<
+
 # ---- Report --------------------------------------------------------------------------------------
 
 STUDIES = turn assignment pendulum
@@ -328,7 +332,7 @@ help:
 
 .PHONY: all examples everything deps demo test check check-gcc check-clang check-san \
         check-valgrind check-tidy check-cppcheck check-format format coverage fuzz run-fuzzers \
-        stability mutations bench-accuracy report figures install uninstall clean help
+        stability mutations bench-accuracy bench-guard report figures install uninstall clean help
 FORCE:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(call object,$(SOURCES)))

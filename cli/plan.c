@@ -67,11 +67,48 @@ static void print_step(const msr_plan_figures *f) {
   if (isinf(f->stable_step)) {
     puts("any");
   } else if (f->stable_step > 0) {
-    printf("%.4g s, at any stretch; DT is %.3g %% of it; safe steps are up to %.4g s\n",
-           f->stable_step, 100 * f->dt / f->stable_step, f->safe_step);
+    printf(
+        "%.4g s, at any stretch (Gershgorin); DT is %.3g %% of it; safe steps are up to %.4g s\n",
+        f->stable_step, 100 * f->dt / f->stable_step, f->safe_step);
   } else {
     puts("none: this integrator heats whatever the step");
   }
+}
+
+static void print_limit(const char *text, const msr_limit *limit, const msr_plan_figures *f) {
+  static const char *const ways[] = {[MSR_FOUND_CLOSED_FORM] = "closed form",
+                                     [MSR_FOUND_LANCZOS] = "Lanczos",
+                                     [MSR_FOUND_BOUND] = "at least: a bound"};
+  label(text);
+  if (limit->found == MSR_FOUND_ANY) {
+    puts("any");
+  } else if (limit->found == MSR_FOUND_NONE) {
+    puts("none");
+  } else {
+    printf("%.4g s (%s", limit->step, ways[limit->found]);
+    if (limit->iterations > 0) printf(", %d iterations", limit->iterations);
+    printf("); DT is %.3g %% of it, a step %.3g %%\n", 100 * f->dt / limit->step,
+           100 * f->h / limit->step);
+  }
+}
+
+static bool damps(const msr_plan *plan) {
+  size_t n;
+  const msr_effect *const effect = msr_plan_effects(plan, &n);
+  for (size_t i = 0; i < n && effect[i].on; i++) {
+    if (effect[i].force && effect[i].force->uses_velocity) return true;
+  }
+  return false;
+}
+
+static msr_status print_limits(const msr_plan *plan, const msr_plan_figures *f, msr_error *err) {
+  msr_stability limits;
+  const msr_status status = msr_plan_stability(plan, &limits, err);
+  if (status != MSR_OK) return status;
+  print_limit("  at rest", &limits.at_rest, f);
+  print_limit("  stretched", &limits.stretched, f);
+  if (damps(plan)) print_limit("  damped", &limits.damped, f);
+  return MSR_OK;
 }
 
 static void print_impacts(const msr_plan_figures *f) {
@@ -124,13 +161,14 @@ static void print_records(const settings *s, const msr_plan_figures *f) {
 
 msr_status plan_command(const settings *s, msr_error *err) {
   msr_plan *plan = NULL;
-  const msr_status status = simulation_plan(s, &plan, err);
+  msr_status status = simulation_plan(s, &plan, err);
   if (status != MSR_OK) return status;
   const msr_plan_figures figures = msr_plan_describe(plan);
   print_scene(&figures);
   print_time(&figures);
   print_integrator(s, &figures);
   print_step(&figures);
+  status = print_limits(plan, &figures, err);
   if (simulation_contacts(plan)) print_impacts(&figures);
   print_memory(s, &figures);
   print_frames(s, &figures);
@@ -140,5 +178,5 @@ msr_status plan_command(const settings *s, msr_error *err) {
   msr_plan_free(plan);
   const msr_status printed = print_end(err);
   signals_end_by_pipe();
-  return printed;
+  return status == MSR_OK ? printed : status;
 }

@@ -202,6 +202,10 @@ typedef struct msr_force {
   /* Upper bounds at any stretch, for the stable step: of the largest eigenvalue of -dF/dx / m
    * [1/s^2], at v = 0, and of -dF/dv / m [1/s]; both are 0 on entry. */
   msr_status (*rates)(const void *self, const msr_view *s, double *omega2, double *gamma);
+  /* For what drives, neither dissipative nor conservative: the most power that it can give at s->t,
+   * whatever the velocities [kg px^2/s^3]; it may be called after every step. NULL: for the guard
+   * the library asks add() after every step. */
+  double (*power)(const void *self, void *scratch, const msr_view *s);
 } msr_force;
 
 /* F_ij = k (|x_ij| - L) x_ij / |x_ij|, 0 at |x_ij| = 0. Every scene has it: it can't be added. */
@@ -579,6 +583,41 @@ typedef struct msr_plan_figures {
 } msr_plan_figures;
 MSR_API msr_plan_figures msr_plan_describe(const msr_plan *plan);
 
+/* How a largest stable step was found. */
+typedef enum msr_found {
+  MSR_FOUND_ANY,         /* any step is stable: nothing swings, or the method has no limit */
+  MSR_FOUND_NONE,        /* no step is */
+  MSR_FOUND_CLOSED_FORM, /* a whole rectangle of 4 neighbours: sum of (4 k/m) sin^2((n-1) pi/2n) */
+  MSR_FOUND_LANCZOS,     /* largest eigenvalue of the actual mesh, 0.1 % accurate (Lanczos 1950) */
+  MSR_FOUND_BOUND        /* at least so large: by bounds that forces give (Gershgorin) */
+} msr_found;
+
+/* A largest stable step. */
+typedef struct msr_limit {
+  double step;  /* [s]; 0: none; INFINITY: any */
+  double omega; /* the largest angular frequency [1/s] */
+  msr_found found;
+  int iterations; /* of Lanczos; else 0 */
+} msr_limit;
+
+/* The largest steps that are stable for the plan's integrator, contacts apart. Forces other than
+ * springs and anchors, if they have rates, count by these. */
+typedef struct msr_stability {
+  msr_limit at_rest;   /* for small swings about the start, springs as long as they are there */
+  msr_limit stretched; /* at any stretch: for the worst, all springs pulled without limit */
+  msr_limit damped;    /* as at_rest, with all that depends on v: by one step of the method for each
+                        * frequency up to the largest and its damping, which is known where drag
+                        * meets equal masses, or damping equal springs at rest; else bounded */
+  double bound;        /* below the last two: stable_step of the figures, by which substeps are
+                        * chosen (Gershgorin) [s] */
+} msr_stability;
+
+/* Analyses the plan: some 100 products of the matrix of springs with a vector, in a second for a
+ * lattice of 10^6 masses; memory, given back: 11 doubles a mass. MSR_ENOMEM, or what
+ * force->rates, force->add, or the integrator's step returns. */
+MSR_API msr_status msr_plan_stability(const msr_plan *plan, msr_stability *stability,
+                                      msr_error *err);
+
 /* Iterations done at frame i: i * iterations / images, rounded down. */
 MSR_API uint64_t msr_plan_frame_iteration(const msr_plan *plan, uint64_t frame);
 
@@ -620,13 +659,14 @@ MSR_API msr_arrays msr_state_edit(msr_state *state);
 /* Iterations done. */
 MSR_API uint64_t msr_state_iteration(const msr_state *state);
 
-/* Advances by `iterations` of DT. The guard looks at the state every 32 iterations: MSR_EUNSTABLE
- * names the mass, the time and a step that is stable. Or what a force returns. */
+/* Advances by `iterations` of DT. The guard looks at speeds every 16 steps, and at all energies
+ * every 128: MSR_EUNSTABLE names the mass, its longest spring, the time and a step that is stable.
+ * Or what a force returns. */
 MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err);
 
-/* The guard: what a driving force returns, or MSR_EUNSTABLE if a number isn't finite or there is
- * far more kinetic and spring energy than the scene had to give: at the start, by what gravity and
- * pushes lost, by what wind did. */
+/* The guard: what a driving force returns, or MSR_EUNSTABLE if a number or an energy isn't finite
+ * or there is far more kinetic and spring energy than the scene had to give: at the start, by what
+ * gravity and pushes lost, by what wind did. */
 MSR_API msr_status msr_state_check(msr_state *state, msr_error *err);
 
 /* The most energy that has come from nowhere since the start, by the guard's looks, over what the

@@ -66,7 +66,8 @@ static msr_system slowing(const msr_integrator *integrator, counted *c) {
 }
 
 /* With hardly a force that depends on q, so that only damping counts: q is 1 + the sum of all v,
- * bounded too. A limit through damp() is where growth begins, slowly, for a force that is small. */
+ * bounded too. A limit through damp() is that of many springs damped in turn; alone it is higher.
+ */
 static void check_damping_limit(const msr_integrator *integrator) {
   const double limit = integrator->damping_stability, any[] = {1, 30, 600};
   counted c = {.omega = integrator->splits ? 0.03 : 0, .gamma = 0.999 * limit};
@@ -77,7 +78,7 @@ static void check_damping_limit(const msr_integrator *integrator) {
   }
   if (isinf(limit)) return;
   assert_true(grown(integrator, &system, 20000) < 100);
-  c.gamma = (integrator->splits ? 2.5 : 1.001) * limit;
+  c.gamma = (integrator->splits ? 8 : 1.001) * limit;
   assert_true(grown(integrator, &system, 20000) > 1e6);
 }
 

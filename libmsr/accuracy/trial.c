@@ -7,8 +7,8 @@
  * evaluation, and solves by iterations. */
 static const double outer_cost = 0.1, step_cost = 0.3, matrix_cost = 16, iteration_cost = 6;
 
-static bool is_outer(const msr_force *force) {
-  return force && force->conservative && force != &msr_force_springs;
+static double cost_of(const msr_force *force) {
+  return force && msri_force_is_outer(force) ? outer_cost : 1;
 }
 
 double msri_trial_cost(const msr_state *state) {
@@ -17,7 +17,7 @@ double msri_trial_cost(const msr_state *state) {
   const double order = integrator->order, steps = (double)state->work.steps;
   double cost = step_cost * steps;
   for (size_t e = 0; e < plan->n_effects && plan->effect[e].on; e++)
-    cost += (is_outer(plan->effect[e].force) ? outer_cost : 1) * (double)state->calls[e];
+    cost += cost_of(plan->effect[e].force) * (double)state->calls[e];
   if (integrator->adaptive) cost += order * order / 12 * steps;
   if (integrator->implicit)
     cost += matrix_cost * (double)state->evaluations +
@@ -44,8 +44,7 @@ double msri_trial_foretell(const msri_setting *setting, const msr_integrator *in
   const double per_step = declared > 0 ? declared : integrator->implicit ? 3 : 10;
   double cost = step_cost;
   for (size_t e = 0; e < plan->n_effects && plan->effect[e].on; e++)
-    cost += (is_outer(plan->effect[e].force) ? outer_cost : 1) *
-            calls_of(&plan->effect[e], integrator, per_step);
+    cost += cost_of(plan->effect[e].force) * calls_of(&plan->effect[e], integrator, per_step);
   if (integrator->adaptive) cost += order * order / 12;
   if (integrator->implicit) cost += per_step * (matrix_cost + 2 * iteration_cost);
   const double steps =

@@ -13,4 +13,7 @@ void msri_scale(size_t n, double c, double *y);
 /* The largest |x[i]|; no finite number if one isn't. */
 double msri_largest(size_t n, const double *x);
 
+/* Sum of w[i] x[i]^2; w NULL: all are 1. */
+double msri_sum_squares(size_t n, const double *w, const double *x);
+
 #endif

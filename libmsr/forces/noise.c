@@ -78,8 +78,8 @@ msri_noise msri_noise_of(double deviation, double time, uint64_t seed) {
   return (msri_noise){time, deviation / sqrt(spline_variance()), seed};
 }
 
-void msri_noise_at(const msri_noise *noise, msri_noise_cache *cache, double t, double *x,
-                   double *y) {
+static void interpolate(const msri_noise *noise, msri_noise_cache *cache, double t, double *x,
+                        double *y) {
   const double most = 0x1p52, asked = t / noise->time * GRID;
   const double at = msri_max(-most, msri_min(asked, most)), k = floor(at);
   double w[POINTS], px, py;
@@ -92,4 +92,13 @@ void msri_noise_at(const msri_noise *noise, msri_noise_cache *cache, double t, d
   }
   *x *= noise->scale;
   *y *= noise->scale;
+}
+
+void msri_noise_at(const msri_noise *noise, msri_noise_cache *cache, double t, double *x,
+                   double *y) {
+  if (!cache->known || cache->t != t) interpolate(noise, cache, t, &cache->at_x, &cache->at_y);
+  cache->known = true;
+  cache->t = t;
+  *x = cache->at_x;
+  *y = cache->at_y;
 }

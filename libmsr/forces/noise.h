@@ -15,8 +15,11 @@ typedef struct msri_noise {
 /* The process whose components have this standard deviation and correlation time [s]. */
 msri_noise msri_noise_of(double deviation, double time, uint64_t seed);
 
-/* Values on the grid that were drawn last; all zero: none. */
+/* Values on the grid that were drawn last, and the process where it was asked for last, as the end
+ * of a step and the beginning of the next are at one time; all zero: none. */
 typedef struct msri_noise_cache {
+  bool known;
+  double t, at_x, at_y;
   bool filled[2];
   int64_t block[2];
   double x[2][MSRI_NOISE_BLOCK], y[2][MSRI_NOISE_BLOCK];

@@ -90,25 +90,52 @@ static msr_status add(const void *self, void *scratch, const msr_view *s, double
   return MSR_OK;
 }
 
-static double stored(double dx, double dy, double k, double L) {
-  const double e = sqrt(dx * dx + dy * dy) - L;
-  return k * e * e / 2;
+/* Energies of `count` springs, summed one after the other, whatever the width of vectors. */
+MSRI_INLINE double stored(size_t count, const msri_ends *e, const double *k, const double *L,
+                          size_t stride) {
+  double each[MSRI_SPRINGS_BLOCK], sum = 0;
+  for (size_t s = 0; s < count; s++) {
+    const double dx = e->xj[s] - e->xi[s], dy = e->yj[s] - e->yi[s];
+    const double longer = sqrt(dx * dx + dy * dy) - L[s * stride];
+    each[s] = k[s * stride] * longer * longer / 2;
+  }
+  for (size_t s = 0; s < count; s++) sum += each[s];
+  return sum;
+}
+
+MSRI_INLINE double stored_in_runs(const msr_view *s) {
+  double sum = 0;
+  for (size_t r = 0; r < s->springs->n_runs; r++) {
+    const msr_run_of_springs *run = &s->springs->run[r];
+    for (size_t from = 0; from < run->count; from += MSRI_SPRINGS_BLOCK) {
+      const size_t left = run->count - from, i = run->first + from;
+      const size_t count = left < MSRI_SPRINGS_BLOCK ? left : MSRI_SPRINGS_BLOCK;
+      const msri_ends e = msri_ends_of(s, i, i + run->offset);
+      sum += run->stride ? stored(count, &e, run->k + from, run->L + from, 1)
+                         : stored(count, &e, run->k, run->L, 0);
+    }
+  }
+  return sum;
+}
+
+#if MSRI_WIDE
+MSRI_AVX2 static double stored_avx2(const msr_view *s) { return stored_in_runs(s); }
+#endif
+
+static double stored_anywhere(const msr_view *s) {
+#if MSRI_WIDE
+  if (msri_has_avx2()) return stored_avx2(s);
+#endif
+  return stored_in_runs(s);
 }
 
 static double energy(const void *self, const msr_view *s) {
   (void)self;
-  double sum = 0;
-  for (size_t r = 0; r < s->springs->n_runs; r++) {
-    const msr_run_of_springs *run = &s->springs->run[r];
-    for (size_t n = 0; n < run->count; n++) {
-      const size_t i = run->first + n, j = i + run->offset;
-      sum += stored(s->x[j] - s->x[i], s->y[j] - s->y[i], run->k[n * run->stride],
-                    run->L[n * run->stride]);
-    }
-  }
+  double sum = stored_anywhere(s);
   for (size_t n = 0; n < s->springs->n_anchors; n++) {
     const msr_anchor *a = &s->springs->anchor[n];
-    sum += stored(a->x - s->x[a->i], a->y - s->y[a->i], a->k, a->L);
+    const msri_ends e = msri_ends_of_anchor(s, a);
+    sum += stored(1, &e, &a->k, &a->L, 0);
   }
   return sum;
 }

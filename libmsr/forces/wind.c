@@ -99,6 +99,12 @@ static msr_status rates(const void *self, const msr_view *s, double *omega2, dou
   return MSR_OK;
 }
 
+/* F.v = c (w - v).v is at most c w^2 / 4, at v = w / 2. */
+static double power(const void *self, void *scratch, const msr_view *s) {
+  const msri_air air = air_at(self, scratch, s->t);
+  return (double)s->n * air.c * (air.ax * air.ax + air.ay * air.ay) / 4;
+}
+
 const msr_force msr_force_wind = {
     .name = "wind",
     .summary = "F = c (w(t) - v), w random (Ornstein-Uhlenbeck)",
@@ -114,4 +120,5 @@ const msr_force msr_force_wind = {
     .add = add,
     .flow = flow,
     .rates = rates,
+    .power = power,
 };

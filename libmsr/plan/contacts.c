@@ -83,7 +83,7 @@ msr_status msri_state_hold(void *self, const double *q0, const double *q, bool *
   *more = contact->hold(contact->self, n, q0, q, held);
   if (!*more || !state->effort.limited) return MSR_OK;
   for (size_t i = 0; i < 2 * n; i++)
-    if (held[i] && !(fabs(q[i] - q0[i]) <= state->plan->leaping.reach)) return MSR_EUNSTABLE;
+    if (held[i] && !(fabs(q[i] - q0[i]) <= state->effort.reach)) return MSR_EUNSTABLE;
   return MSR_OK;
 }
 

@@ -54,10 +54,15 @@ static double at_start(const msr_plan *plan, const msr_view *s) {
   return whole > 0 ? energy / whole : 0;
 }
 
+bool msri_plan_crushes(const msr_plan *plan, const msr_view *start) {
+  return at_start(plan, start) > crushing;
+}
+
 double msri_plan_safe_share(const msr_plan *plan, const msr_view *start) {
   const bool supports = plan->contact.drift != NULL;
-  if (at_start(plan, start) > crushing) return 0.5 / 64;
+  if (!plan->cares && msri_plan_crushes(plan, start)) return 0.5 / 64;
   if (!supports) return 0.9;
+  if (plan->cares) return 0.5;
   const double crushed = by_fall(plan) / crushing;
   return crushed > 1 ? 0.5 / msri_min(crushed, 8) : 0.5;
 }

@@ -122,7 +122,7 @@ msr_system msri_state_system(msr_state *state) {
       .atol = state->plan->figures.atol,
       .rtol = state->plan->figures.rtol,
   };
-  if (state->plan->graph) msri_state_solve_implicitly(&system);
+  if (state->stiffness.graph) msri_state_solve_implicitly(&system);
   return system;
 }
 

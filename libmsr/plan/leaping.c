@@ -37,11 +37,17 @@ static msr_status explain(msr_plan *plan, msr_error *err) {
       plan->leaping.method->name, f->integrator->name, 100 * share, f->integrator->name);
 }
 
+bool msri_plan_can_leap(const msr_plan *plan) {
+  const size_t n = plan->figures.masses, springs = plan->mesh.springs.n;
+  return springs > 0 && n < UINT32_MAX && springs < UINT32_MAX &&
+         (!plan->contact.drift || plan->contact.hold);
+}
+
 msr_status msri_plan_choose_leaps(msr_plan *plan, msr_error *err) {
   msr_plan_figures *f = &plan->figures;
   const double substep = plan->contact.drift ? supported_substep : free_substep;
   const uint64_t leg = leg_of(plan);
-  if (plan->contact.drift && !plan->contact.hold) return MSR_OK;
+  if (!msri_plan_can_leap(plan)) return MSR_OK;
   if (share * substep * (double)leg < cheapest) return MSR_OK;
   const msr_status status = msri_graph_create(f->masses, &plan->mesh.springs, &plan->graph, err);
   if (status != MSR_OK) return status;

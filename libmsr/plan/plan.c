@@ -82,6 +82,7 @@ static msr_status add_term(msr_plan *plan, const msr_force *force, const void *p
   plan->midpoint |= force->uses_velocity && !force->flow;
   plan->middle |= plan->figures.integrator->implicit && !force->uses_velocity && !force->between;
   plan->driven |= msri_force_drives(force);
+  plan->followed |= msri_force_drives(force) && !force->power;
   msri_format(reason, MSR_MESSAGE_SIZE, "asked for");
   if (force->describe) force->describe(term->params, start, reason, MSR_MESSAGE_SIZE);
   return MSR_OK;
@@ -186,6 +187,8 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan
   msri_plan_start(plan, q, q + n, v, v + n);
   const msr_view start = msri_plan_view(plan, 0, q, v);
   status = call_for_effects(plan, scene, &start, err);
+  plan->cares = automatic && msri_plan_can_leap(plan);
+  plan->careful = plan->cares && msri_plan_crushes(plan, &start);
   if (status == MSR_OK) status = msri_plan_choose_step(plan, &start, substeps, err);
   if (status == MSR_OK && automatic) status = msri_plan_choose_leaps(plan, err);
   free(q);

@@ -55,6 +55,7 @@ struct msr_plan {
   size_t scratch_bytes; /* of all terms */
   bool midpoint;        /* a force on v has no flow of its own: states have room for one */
   bool driven;          /* a force drives: states follow its work */
+  bool followed;        /* one of them doesn't tell its power: likewise, mass by mass */
   bool middle;          /* a force without between() acts in the middle of a step: likewise */
   msri_graph *graph;    /* of the springs, if the integrator is implicit */
   msri_contact contact; /* drift NULL: nothing is ever in the way */
@@ -62,6 +63,9 @@ struct msr_plan {
   char (*reason)[MSR_MESSAGE_SIZE]; /* of the effects */
   size_t n_effects;
   msri_leaping leaping;
+  double safe_share; /* of the stable step, that steps are no larger than */
+  bool cares;        /* states watch their energy, and step with care once it grows */
+  bool careful;      /* from the start */
   msri_notes notes;
 };
 
@@ -72,6 +76,11 @@ void msri_mesh_clear(msri_mesh *mesh);
 /* Can the force bring in energy that no potential tells of? */
 static inline bool msri_force_drives(const msr_force *force) {
   return !force->dissipative && (!force->conservative || force->uses_time);
+}
+
+/* Has it a potential that a fall or a push loses? */
+static inline bool msri_force_is_outer(const msr_force *force) {
+  return force->conservative && force != &msr_force_springs;
 }
 
 /* Does the library see to contacts after each step? Where the integrator doesn't, or where it would
@@ -115,6 +124,12 @@ const char *msri_plan_mass_name(const msr_plan *plan, size_t mass, char *text, s
  */
 double msri_plan_safe_share(const msr_plan *plan, const msr_view *start);
 
+/* Can what moves at the start crush the springs? */
+bool msri_plan_crushes(const msr_plan *plan, const msr_view *start);
+
+/* Stability limit of the explicit midpoint rule, which stands in for a flow that isn't given. */
+extern const double msri_midpoint_limit;
+
 /* Fills the stable step and the substeps in the figures, and what the user should know of them. */
 msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t substeps,
                                  msr_error *err);
@@ -122,7 +137,13 @@ msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t
 /* Size of the acceleration by gravity [px/s^2]. */
 double msri_plan_gravity(const msr_plan *plan);
 
+/* Can implicit steps be taken, past whatever is in the way? */
+bool msri_plan_can_leap(const msr_plan *plan);
+
 /* Lets the plan leap if that may cost less than its substeps, and says so. */
 msr_status msri_plan_choose_leaps(msr_plan *plan, msr_error *err);
+
+/* The largest step that is safe with Verlet; DT if nothing limits it. */
+double msri_plan_verlet_step(const msr_plan *plan);
 
 #endif

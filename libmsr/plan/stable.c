@@ -7,15 +7,14 @@
 
 #include <math.h>
 
-/* Stability limit of the explicit midpoint rule, which stands in for a flow that isn't given. */
-static const double midpoint_limit = 2;
+const double msri_midpoint_limit = 2;
 
 static const double most_substeps = 1e9;
 
 /* The integrator's limit of h gamma for a force. */
 static double damping_limit(const msr_integrator *integrator, const msr_force *force) {
   const double limit = integrator->damping_stability;
-  return integrator->splits && !force->flow ? msri_min(limit, midpoint_limit) : limit;
+  return integrator->splits && !force->flow ? msri_min(limit, msri_midpoint_limit) : limit;
 }
 
 /* `damping`: sum of gamma over its limit. */
@@ -30,6 +29,12 @@ static msr_status bound_rates(msr_plan *plan, const msr_view *start, double *dam
     if (status != MSR_OK)
       return msri_fail(err, status, "%s: no bound for the stable step: %s", term->force->name,
                        msr_status_text(status));
+    if (isinf(of_x) || isinf(of_v))
+      return msri_fail(
+          err, MSR_EINPUT,
+          "%s: stiffness or damping over mass is beyond the range of numbers, 1.8e308; "
+          "lower it, or raise MASSE",
+          term->force->name);
     if (!(of_x >= 0 && of_v >= 0))
       return msri_fail(err, MSR_EUSAGE,
                        "force %s: rates must be numbers of 0 or more, not %g and %g",
@@ -54,11 +59,16 @@ static const double resolved = 2;
  * spring: supports, which stop a mass while its neighbours go on for the rest of the step, and
  * methods that keep phase-space area, whose energy grows when long steps meet springs that turn and
  * buckle. */
-static double safe_step(const msr_plan *plan, const msr_view *start) {
+static double safe_step(const msr_plan *plan) {
   const msr_plan_figures *f = &plan->figures;
   const bool follows = plan->contact.drift || f->integrator->symplectic;
   const bool any = f->integrator->implicit && isinf(f->stable_step) && f->omega > 0;
-  return msri_plan_safe_share(plan, start) * (any && follows ? resolved / f->omega : f->stable_step);
+  return plan->safe_share * (any && follows ? resolved / f->omega : f->stable_step);
+}
+
+double msri_plan_verlet_step(const msr_plan *plan) {
+  const double omega = plan->figures.omega;
+  return omega > 0 ? plan->safe_share * resolved / omega : plan->figures.dt;
 }
 
 /* The fewest equal steps of dt that are safe. */
@@ -98,14 +108,25 @@ static msr_status explain(msr_plan *plan, bool automatic, msr_error *err) {
                         f->h > f->stable_step ? "explode" : "heat up and then explode", fewest(f));
 }
 
+/* Forces are multiplied by 1 / m. */
+static msr_status check_masses(const msr_view *s, msr_error *err) {
+  for (size_t i = 0; i < s->n; i++)
+    if (isinf(1 / msr_view_mass(s, i)))
+      return msri_fail(err, MSR_EINPUT, "a mass of %g kg is too small to divide by; raise MASSE",
+                       msr_view_mass(s, i));
+  return MSR_OK;
+}
+
 msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t substeps,
                                  msr_error *err) {
   msr_plan_figures *f = &plan->figures;
   double damping = 0;
-  const msr_status status = bound_rates(plan, start, &damping, err);
+  msr_status status = check_masses(start, err);
+  if (status == MSR_OK) status = bound_rates(plan, start, &damping, err);
   if (status != MSR_OK) return status;
   f->stable_step = stable_step(f, damping);
-  f->safe_step = safe_step(plan, start);
+  plan->safe_share = msri_plan_safe_share(plan, start);
+  f->safe_step = safe_step(plan);
   const double needed = f->stable_step > 0 ? fewest(f) : 1;
   const bool any = isinf(f->stable_step);
   const double largest = any ? f->safe_step : f->stable_step;

@@ -15,7 +15,7 @@ enum { ALIGNMENT = 64 };
 /* Where each array lies after the block's first aligned byte; `end` is after the last. */
 typedef struct layout {
   size_t solver, q, v, work, before, owed, ahead, middle, between, drive, scratch, calls, start,
-      leap, end;
+      leap, kept, end;
 } layout;
 
 static size_t reserve(size_t *end, size_t bytes) {
@@ -42,10 +42,11 @@ static layout lay_out(const msr_plan *plan) {
   l.ahead = reserve(&end, msri_plan_settles(plan) ? vector : 0);
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
   l.between = reserve(&end, plan->middle ? 2 * vector : 0);
-  l.drive = reserve(&end, plan->driven ? vector : 0);
+  l.drive = reserve(&end, plan->followed ? vector : 0);
   l.scratch = reserve(&end, plan->scratch_bytes);
   l.start = reserve(&end, plan->leaping.method ? 4 * vector : 0);
   l.leap = reserve(&end, plan->leaping.method ? plan->leaping.method->vectors * vector : 0);
+  l.kept = reserve(&end, plan->cares ? 2 * vector : 0);
   l.calls = reserve(&end, plan->n_effects * sizeof(uint64_t));
   l.end = end;
   return l;
@@ -79,6 +80,7 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .leap = {.start = (void *)(arrays + l.start),
                .before = (void *)(arrays + l.start + 4 * plan->figures.masses * sizeof(double)),
                .vector = (void *)(arrays + l.leap)},
+      .care = {.kept = (void *)(arrays + l.kept)},
       .middle = (void *)(arrays + l.middle),
       .between = (void *)(arrays + l.between),
       .drive = (void *)(arrays + l.drive),
@@ -104,10 +106,36 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
   return MSR_OK;
 }
 
+msr_status msri_state_make_room(msr_state *state, msr_error *err) {
+  const msr_plan *plan = state->plan;
+  const size_t n = plan->figures.masses, vector = 2 * n * sizeof(double);
+  const size_t vectors = msr_integrator_energy_momentum.vectors;
+  if (plan->graph || state->care.memory) return MSR_OK;
+  msr_status status = msri_graph_create(n, &plan->mesh.springs, &state->care.graph, err);
+  if (status != MSR_OK) return status;
+  size_t end = 0;
+  const size_t leap = reserve(&end, 4 * vector), work = reserve(&end, vectors * vector);
+  const size_t between = reserve(&end, 2 * vector);
+  const size_t solver = reserve(
+      &end, msri_stiffness_bytes(state->care.graph, plan->mesh.springs.n_anchors, plan->m != NULL));
+  state->care.memory = msri_alloc(1, end + ALIGNMENT, "steps with care", err);
+  if (!state->care.memory) return MSR_ENOMEM;
+  char *arrays = first_aligned(state->care.memory);
+  const msr_view now = msr_state_view(state);
+  state->leap.start = (void *)(arrays + leap);
+  state->leap.before = state->leap.start + 4 * n;
+  state->leap.vector = (void *)(arrays + work);
+  state->between = (void *)(arrays + between);
+  state->stiffness = msri_stiffness_place(state->care.graph, &now, arrays + solver);
+  return MSR_OK;
+}
+
 void msr_state_free(msr_state *state) {
   if (!state) return;
   const msr_integrator *integrator = state->plan->figures.integrator;
   if (integrator->close) integrator->close(state->work.object);
+  free(state->care.memory);
+  free(state->care.graph);
   free(state);
 }
 
@@ -125,13 +153,18 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
   to->leap.leapt = from->leap.leapt;
   to->frames = from->frames;
   to->guard = from->guard;
+  to->care.begun = from->care.begun;
+  to->care.on = from->care.on;
+  to->care.at = from->care.at;
+  to->care.guard = from->care.guard;
+  to->care.lost = from->care.lost;
   memcpy(to->q, from->q, l.end - l.q);
 }
 
 void msri_state_touched(msr_state *state) {
   state->fresh = false;
   state->known.q = NULL;
-  state->guard.begun = false;
+  state->guard.begun = state->care.begun = false;
 }
 
 /* ---- Reading */

@@ -13,6 +13,9 @@ typedef struct msri_guard {
   double lost;           /* the most that these have lost */
   double work;           /* bound of what driving forces have done since */
   double gain;           /* the most energy from nowhere, over what there was to give */
+  double power;          /* bound of what driving forces that tell of it do */
+  double most;           /* kinetic energy that calls for a closer look */
+  uint64_t looked;       /* steps at the last look at all energies */
 } msri_guard;
 
 /* Where state->ahead holds the acceleration, without what depends on v; q NULL: nowhere. */
@@ -25,6 +28,7 @@ typedef struct msri_known {
 typedef struct msri_effort {
   bool limited;
   double spent, limit;
+  double reach;         /* how far what meets something may be from it [px] */
   unsigned evaluations; /* of the mean force */
 } msri_effort;
 
@@ -34,6 +38,17 @@ typedef struct msri_leap_memory {
   double *vector;         /* of the method: [vectors][2n] */
   uint64_t leaps, leapt;  /* so far; and substeps that they took the place of */
 } msri_leap_memory;
+
+/* See run/care.c. */
+typedef struct msri_care {
+  bool begun, on;
+  uint64_t at;      /* iteration: where it was switched on, or where q, v were kept last */
+  double *kept;     /* [4n] if plan->cares: q, v there */
+  msri_guard guard; /* and what it knew */
+  double lost;      /* as the guard's, by looks at iterations that don't depend on who asks */
+  void *memory;     /* for steps with care, once there are any */
+  msri_graph *graph;
+} msri_care;
 
 struct msr_state {
   const msr_plan *plan;
@@ -50,14 +65,20 @@ struct msr_state {
   double *ahead;      /* [2n] likewise: the acceleration at the end of a step */
   msri_known known;
   msri_effort effort;
+  msri_care care;
   msri_leap_memory leap;    /* if plan->leaping.method */
   double *middle;           /* [4n] if plan->midpoint: force, velocity */
   double *between;          /* [4n] if plan->middle: the middle, force */
-  double *drive;            /* [2n] if plan->driven: driving forces */
+  double *drive;            /* [2n] if plan->followed: driving forces */
   char *scratch;            /* [plan->scratch_bytes] */
   uint64_t *calls;          /* [plan->n_effects] */
   msri_stiffness stiffness; /* if plan->graph */
 };
+
+/* Steps since t = 0, modulo 2^64. */
+static inline uint64_t msri_state_steps(const msr_state *state) {
+  return state->iteration * state->plan->figures.substeps + state->substep;
+}
 
 static inline double msri_state_time(const msr_state *state) {
   return msri_plan_time(&state->plan->figures, state->iteration, state->substep);
@@ -111,6 +132,9 @@ static inline uint64_t msri_hash(uint64_t hash, uint64_t value) {
   return (hash ^ value) * UINT64_C(0x100000001b3);
 }
 uint64_t msri_hash_words(uint64_t hash, const void *words, size_t n);
+
+/* Memory for implicit steps of a state whose plan has none, in care->memory. MSR_ENOMEM. */
+msr_status msri_state_make_room(msr_state *state, msr_error *err);
 
 /* Tells that q or v were changed from outside. */
 void msri_state_touched(msr_state *state);

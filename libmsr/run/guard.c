@@ -2,11 +2,16 @@
  *
  * A sound run can't gain energy that the scene didn't have to give: kinetic and spring energy at
  * the start, plus the most that the other potentials (gravity, pushes) lost, plus what driving
- * forces (wind) have done, h sum max(0, F v) in each substep, with v at its end and F there or, if
- * that is more, at its start: in a long step from rest, air is strong first and fast last. A fall
- * out of the picture gives no more than one to its bottom. To that comes what is no flaw: one kick
- * of 2 h F by the outer forces of the start (a mass that rests on a support is kicked and reflected
- * for ever), and rounding.
+ * forces have done, in each substep h times the most power that they tell of (wind), else
+ * h sum max(0, F v), with v at its end and F there or, if that is more, at its start: in a long
+ * step from rest, air is strong first and fast last. A fall out of the picture gives no more than
+ * one to its bottom. To that comes what is no flaw: one kick of 2 h F by the outer forces of the
+ * start (a mass that rests on a support is kicked and reflected for ever), and rounding.
+ *
+ * All energies cost up to a third of a step: they are looked at every 128 steps, and whenever a
+ * glance at the speeds, every 16 steps, sees more kinetic energy than there may be. So what
+ * explodes slowly is told before it can be seen, and what does so at once while there still are
+ * numbers.
  *
  * Near the limit of stability, with s = h omega / 2 near 1, the energy of the method itself swings:
  * by 1 / (1 - s^2) with Verlet, by (1 + s) / (1 - s) with symplectic Euler, at most 4 / (1 - s^2),
@@ -14,13 +19,18 @@
  * Acta Numerica 12, 399, 1.5). */
 #include "run/guard.h"
 
-#include "base/number.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
 
 /* Motion that rounding may make, against the springs: far below what can be seen. */
 static const double rounding = 1e-6; /* [px] */
+
+/* Below it energies lose digits, as products of what is small; above it sums may overflow. */
+static const double smallest = 1e-290, largest = 1e290;
+
+enum { GLANCE = 16, LOOK = 128 }; /* steps between two */
 
 typedef struct energies {
   double moving;         /* kinetic and of springs */
@@ -34,31 +44,44 @@ static energies energies_of(const msr_state *state) {
 
 /* ---- What the scene has to give */
 
-static msr_status find_drive(msr_state *state) {
-  if (!state->plan->driven) return MSR_OK;
-  const msr_view view = msr_state_view(state);
-  double *f = state->drive;
-  memset(f, 0, 2 * view.n * sizeof *f);
-  return msri_state_add_forces(state, &view, msri_force_drives, false, f, f + view.n);
-}
+static bool followed(const msr_force *force) { return msri_force_drives(force) && !force->power; }
 
-static double power(const msr_state *state) {
+/* Of the forces that don't tell their power, at v. */
+static double power_along(const msr_state *state) {
   const size_t n = 2 * state->plan->figures.masses;
   double sum = 0;
   for (size_t i = 0; i < n; i++) sum += msri_max(0, state->drive[i] * state->v[i]);
   return sum;
 }
 
-msr_status msri_guard_follow(msr_state *state, double h) {
-  if (!state->plan->driven) return MSR_OK;
-  const double before = power(state);
-  const msr_status status = find_drive(state);
-  state->guard.work += h * msri_max(before, power(state));
-  return status;
+static double told_power(const msr_state *state, const msr_view *view) {
+  const msr_plan *plan = state->plan;
+  double sum = 0;
+  for (size_t i = 0; i < plan->n_terms; i++) {
+    const msri_term *term = &plan->term[i];
+    if (!msri_force_drives(term->force) || !term->force->power) continue;
+    sum += msri_max(0, term->force->power(term->self, state->scratch + term->scratch, view));
+  }
+  return sum;
 }
 
-static bool is_outer(const msr_force *force) {
-  return force->conservative && force != &msr_force_springs;
+static msr_status find_drive(msr_state *state) {
+  const msr_view view = msr_state_view(state);
+  state->guard.power = told_power(state, &view);
+  if (!state->plan->followed) return MSR_OK;
+  double *f = state->drive;
+  memset(f, 0, 2 * view.n * sizeof *f);
+  return msri_state_add_forces(state, &view, followed, false, f, f + view.n);
+}
+
+msr_status msri_guard_follow(msr_state *state, double h) {
+  if (!state->plan->driven) return MSR_OK;
+  const bool follows = state->plan->followed;
+  const double told = state->guard.power, before = follows ? power_along(state) : 0;
+  const msr_status status = find_drive(state);
+  const double after = follows ? power_along(state) : 0;
+  state->guard.work += h * (msri_max(told, state->guard.power) + msri_max(before, after));
+  return status;
 }
 
 /* Energy of every mass after a kick of 2 h F from rest; f[2n] are the outer forces. */
@@ -74,7 +97,7 @@ static double kick_energy(const msr_view *s, double h, const double *f) {
 static double rounding_energy(const msr_view *s, double omega) {
   double mass = 0;
   for (size_t i = 0; i < s->n; i++) mass += msr_view_mass(s, i);
-  return mass * pow(omega * rounding, 2) / 2;
+  return msri_min(mass * pow(omega * rounding, 2) / 2 + smallest, largest);
 }
 
 msr_status msri_guard_begin(msr_state *state, msr_error *err) {
@@ -84,11 +107,14 @@ msr_status msri_guard_begin(msr_state *state, msr_error *err) {
   double *f = state->work.vector; /* the integrator begins anew */
   state->fresh = false;
   memset(f, 0, 2 * view.n * sizeof *f);
-  msr_status status = msri_state_add_forces(state, &view, is_outer, false, f, f + view.n);
+  msr_status status =
+      msri_state_add_forces(state, &view, msri_force_is_outer, false, f, f + view.n);
   if (status == MSR_OK) status = find_drive(state);
   const energies start = energies_of(state);
   state->guard = (msri_guard){
       .begun = status == MSR_OK,
+      .looked = msri_state_steps(state),
+      .power = state->guard.power,
       .energy =
           start.moving + kick_energy(&view, figures->h, f) + rounding_energy(&view, figures->omega),
       .gravity = start.gravity,
@@ -107,78 +133,61 @@ static double allowance(const msr_plan_figures *f) {
   return swing > 0 ? 4 / msri_max(swing, 0.004) : 10;
 }
 
-static double speed(const msr_view *s, size_t i) { return hypot(s->vx[i], s->vy[i]); }
-
-/* The first mass that isn't finite, else the fastest. */
-static size_t culprit(const msr_view *s) {
-  size_t fastest = 0;
-  for (size_t i = 0; i < s->n; i++) {
-    if (!isfinite(speed(s, i)) || !isfinite(s->x[i]) || !isfinite(s->y[i])) return i;
-    if (speed(s, i) > speed(s, fastest)) fastest = i;
-  }
-  return fastest;
-}
-
-/* What to do where any step is stable: a step that is more accurate. */
-static void advise_accuracy(const msr_plan_figures *f, char *text, size_t size) {
-  if (f->integrator->adaptive)
-    msri_format(text, size,
-                "any step is stable, but errors are too large: lower atol, %g, and rtol, %g",
-                f->atol, f->rtol);
-  else
-    msri_format(text, size,
-                "any step is stable, but this one follows too little: try %llu substeps",
-                4 * (unsigned long long)f->substeps);
-}
-
-/* What to do: a step that is stable, in the user's terms. */
-static void advise(const msr_plan_figures *f, bool finite, char *text, size_t size) {
-  const double substeps = ceil(f->dt / f->safe_step);
-  if (f->stable_step == 0)
-    msri_format(text, size, "%s has no stable step here; use verlet", f->integrator->name);
-  else if (f->h > f->safe_step)
-    msri_format(text, size, "stable: DT %.3g, or %.10g substeps", 0.995 * f->safe_step, substeps);
-  else if (finite && isinf(f->stable_step))
-    advise_accuracy(f, text, size);
-  else if (finite)
-    msri_format(text, size,
-                "the step is below the limit of stability, %.3g s: try %llu substeps, or damping",
-                f->stable_step, 4 * (unsigned long long)f->substeps);
-  else
-    msri_format(text, size, "the step is stable: look for a force or a value that is too large");
-}
-
-/* `ratio`: energy over what there was to give; NaN: a number isn't finite. */
-static msr_status refuse(const msr_state *state, double ratio, msr_error *err) {
-  const msr_view view = msr_state_view(state);
-  char name[64], what[96] = "is no longer finite", advice[192];
-  advise(&state->plan->figures, !isnan(ratio), advice, sizeof advice);
-  msri_plan_mass_name(state->plan, culprit(&view), name, sizeof name);
-  if (!isnan(ratio))
-    msri_format(what, sizeof what,
-                "has run away, with %.3g times the energy that the scene had to give", ratio);
-  return msri_fail(err, MSR_EUNSTABLE, "unstable at iteration %llu, t = %g s: %s %s; %s",
-                   (unsigned long long)state->iteration, view.t, name, what, advice);
-}
-
 /* What gravity has given since the start: a fall out of the picture counts to its bottom only. */
 static double given_by_gravity(const msr_state *state, double fallen) {
   return state->plan->picture ? msri_min(fallen, fabs(state->guard.gravity)) : fallen;
+}
+
+/* What there is and was, and how much of it came from nowhere. */
+typedef struct balance {
+  double moving, given, gain;
+} balance;
+
+static balance balance_of(const msr_state *state, double *lost) {
+  const msri_guard *guard = &state->guard;
+  const energies now = energies_of(state);
+  const double fallen = guard->gravity - now.gravity, pushed = guard->outer - now.outer;
+  *lost = msri_max(*lost, given_by_gravity(state, fallen) + pushed);
+  return (balance){.moving = now.moving,
+                   .given = guard->energy + *lost + guard->work,
+                   .gain = now.moving - guard->energy - fallen - pushed - guard->work};
+}
+
+double msri_guard_gain(const msr_state *state, double *lost) {
+  const balance b = balance_of(state, lost);
+  return b.gain <= 0 ? 0 : b.gain / b.given;
 }
 
 msr_status msr_state_check(msr_state *state, msr_error *err) {
   const msr_status status = msri_guard_begin(state, err);
   if (status != MSR_OK) return status;
   msri_guard *guard = &state->guard;
-  const energies now = energies_of(state);
-  const double fallen = guard->gravity - now.gravity, pushed = guard->outer - now.outer;
-  guard->lost = msri_max(guard->lost, given_by_gravity(state, fallen) + pushed);
-  const double given = guard->energy + guard->lost + guard->work;
-  const double gain = now.moving - guard->energy - fallen - pushed - guard->work;
-  const bool finite = isfinite(now.moving) && isfinite(gain);
+  const balance b = balance_of(state, &guard->lost);
+  const double given = b.given, gain = b.gain;
+  const bool finite = isfinite(b.moving) && isfinite(gain);
   if (finite && given > 0) guard->gain = msri_max(guard->gain, gain / given);
-  if (finite && gain <= (allowance(&state->plan->figures) - 1) * given) return MSR_OK;
-  return refuse(state, finite ? 1 + gain / given : (double)NAN, err);
+  const double most = allowance(&state->plan->figures) * given;
+  guard->most = msri_max(most, 2 * b.moving); /* a fall out of the picture goes on */
+  guard->looked = msri_state_steps(state);
+  if (finite && gain <= most - given) return MSR_OK;
+  return msri_guard_refuse(state, finite ? 1 + gain / given : (double)NAN, err);
+}
+
+/* Is there more than there may be, as far as the last look knew, or no number? */
+static bool runs(const msr_state *state) {
+  const msr_plan *plan = state->plan;
+  const size_t n = plan->figures.masses;
+  const double *v = state->v;
+  const double twice = plan->m
+                           ? msri_sum_squares(n, plan->m, v) + msri_sum_squares(n, plan->m, v + n)
+                           : plan->uniform_mass * msri_sum_squares(2 * n, NULL, v);
+  return !(twice / 2 <= state->guard.most);
+}
+
+msr_status msri_guard_watch(msr_state *state, msr_error *err) {
+  const uint64_t steps = msri_state_steps(state);
+  const bool late = steps - state->guard.looked >= LOOK;
+  return late || (steps % GLANCE == 0 && runs(state)) ? msr_state_check(state, err) : MSR_OK;
 }
 
 double msr_state_energy_gain(const msr_state *state) { return state->guard.gain; }

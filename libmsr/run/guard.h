@@ -4,13 +4,21 @@
 
 #include "plan/state.h"
 
-/* Iterations between two looks. */
-enum { MSRI_GUARD_PERIOD = 32 };
-
 /* Takes the state as the start, if it has none. */
 msr_status msri_guard_begin(msr_state *state, msr_error *err);
 
 /* Adds what driving forces have done in the last step, of h. What a force returns. */
 msr_status msri_guard_follow(msr_state *state, double h);
+
+/* Energy from nowhere, over what the scene had to give; `lost` is the most that potentials have
+ * lost by the looks of who asks. */
+double msri_guard_gain(const msr_state *state, double *lost);
+
+/* After a substep: looks at the state if it is time to. As msr_state_check. */
+msr_status msri_guard_watch(msr_state *state, msr_error *err);
+
+/* What to say of a state that can't be true: see guard_says.c. `ratio`: energy over what there was
+ * to give; NaN: a number or an energy isn't finite. */
+msr_status msri_guard_refuse(const msr_state *state, double ratio, msr_error *err);
 
 #endif

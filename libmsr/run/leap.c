@@ -12,7 +12,10 @@
 
 #include "run/guard.h"
 
+#include <math.h>
 #include <string.h>
+
+enum { CAREFUL = 4 }; /* substeps of a step with care, at most */
 
 /* A leap under way is a number of substeps. */
 typedef struct course {
@@ -40,12 +43,14 @@ static void restore(msr_state *state, const double *kept) {
 static msr_status try(course *c) {
   msr_state *state = c->state;
   const msr_plan_figures *f = &state->plan->figures;
-  const msr_integrator *method = c->plan->method;
+  const msr_integrator *method = &msr_integrator_energy_momentum;
   const msr_interval interval = {msri_state_time(state), (double)c->length * f->h,
                                  msri_plan_time(f, state->iteration, state->substep + c->length)};
   double *before = state->leap.before;
   keep(state, before);
-  state->effort = (msri_effort){.limited = true, .limit = c->credit};
+  state->effort = (msri_effort){.limited = true,
+                                .limit = c->credit,
+                                .reach = c->length > 1 ? c->plan->reach : (double)INFINITY};
   msr_workspace work = {.vector = state->leap.vector};
   const msr_status status =
       method->step(method, c->system, &interval, state->q, state->v, &work, NULL);
@@ -73,6 +78,7 @@ static msr_status land(course *c) {
 
 /* Is a leap of that length worth a try? */
 static bool pays(const course *c) {
+  if (c->state->care.on) return c->length > 0;
   return c->credit > 0 && c->plan->substep * (double)c->length > c->plan->least;
 }
 
@@ -95,9 +101,11 @@ static void go_back(msr_state *state, const beginning *to) {
 msr_status msri_leap(msr_state *state, const msr_system *system, const msri_poll *watch) {
   const msri_leaping *plan = &state->plan->leaping;
   const uint64_t left = state->plan->figures.substeps - state->substep;
-  const uint64_t leg = left < plan->leg ? left : plan->leg, end = state->substep + leg;
+  const uint64_t most = state->care.on ? CAREFUL : plan->leg;
+  const uint64_t leg = left < most ? left : most, end = state->substep + leg;
   const beginning start = {state->substep, state->contacts};
-  course c = {state, system, plan, leg, plan->share * plan->substep * (double)leg};
+  const double credit = plan->share * plan->substep * (double)leg;
+  course c = {state, system, plan, leg, state->care.on ? (double)INFINITY : credit};
   msr_status status = MSR_OK;
   keep(state, state->leap.start);
   while (state->substep < end && status == MSR_OK) {

@@ -7,6 +7,7 @@
 /* Does a leg begin here? */
 static inline bool msri_leaps(const msr_state *state) {
   const msri_leaping *plan = &state->plan->leaping;
+  if (state->care.on) return true;
   return plan->method && state->substep % plan->leg == 0;
 }
 

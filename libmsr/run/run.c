@@ -1,4 +1,5 @@
 /* run.c - a whole run: iterations up to each frame, the guard, then the sinks. */
+#include "run/care.h"
 #include "run/step.h"
 
 static msr_status give(const msr_sink *sink, const msr_state *state, uint64_t frame,
@@ -12,17 +13,26 @@ static msr_status give(const msr_sink *sink, const msr_state *state, uint64_t fr
 
 static msr_status deliver(msr_state *state, const msr_run_options *options, uint64_t frame,
                           msr_error *err) {
-  msr_status status = msr_state_check(state, err);
+  msr_status status = options->n_sinks > 0 ? msr_state_check(state, err) : MSR_OK;
   for (size_t s = 0; s < options->n_sinks && status == MSR_OK; s++)
     status = give(&options->sinks[s], state, frame, err);
   return status;
 }
 
-/* Steps up to an iteration, if it's still to come. */
+/* Steps up to an iteration, if it's still to come, and checks the state; again, with care, if it
+ * isn't sound. */
 static msr_status step_to(msr_state *state, uint64_t iteration, const msri_poll *poll,
                           msr_error *err) {
-  return state->iteration < iteration ? msri_step(state, iteration - state->iteration, poll, err)
-                                      : MSR_OK;
+  msr_status status = MSR_OK;
+  for (bool turned = true; turned;) {
+    if (state->iteration < iteration)
+      status = msri_step(state, iteration - state->iteration, poll, err);
+    if (status != MSR_OK) return status;
+    const msr_status verdict = msr_state_check(state, err);
+    status = msri_care_watch(state, verdict == MSR_EUNSTABLE, &turned, err);
+    if (status == MSR_OK && !turned) status = verdict;
+  }
+  return status;
 }
 
 /* The first frame that is still to come: those that the state has passed by itself aren't. */
@@ -44,8 +54,7 @@ msr_status msr_run(msr_state *state, const msr_run_options *options, msr_error *
     if (status == MSR_OK) status = deliver(state, options, f, err);
     if (status == MSR_OK) state->frames = f + 1;
   }
-  if (status == MSR_OK) status = step_to(state, plan->figures.iterations, &poll, err);
-  return status == MSR_OK ? msr_state_check(state, err) : status;
+  return status == MSR_OK ? step_to(state, plan->figures.iterations, &poll, err) : status;
 }
 
 msr_status msr_sink_close(msr_sink *sink, msr_error *err) {

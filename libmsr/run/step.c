@@ -2,6 +2,7 @@
  * Each step begins at the very time at which the one before ended. */
 #include "run/step.h"
 
+#include "run/care.h"
 #include "run/guard.h"
 #include "run/impacts.h"
 #include "run/leap.h"
@@ -83,30 +84,27 @@ static msr_status step(msr_state *state, const msr_system *system, const msr_int
 }
 
 /* One substep. */
-static msr_status substep(msr_state *state, const msr_system *system, msr_error *err) {
+static msr_status substep(msr_state *state, const msr_system *system, const msri_poll *poll,
+                          msr_error *err) {
   const msr_plan_figures *f = &state->plan->figures;
   const msr_interval interval = {msri_state_time(state), f->h,
                                  msri_plan_time(f, state->iteration, state->substep + 1)};
-  const msr_status status = step(state, system, &interval, err);
+  msr_status status = poll->call ? poll->call(poll->data, state) : MSR_OK;
+  if (status == MSR_OK) status = step(state, system, &interval, err);
   if (status != MSR_OK) return status;
   state->substep++;
   return msri_guard_follow(state, f->h);
 }
 
-/* One iteration, or what is left of the one that was cut short. */
-static msr_status iterate(msr_state *state, const msr_system *system, const msri_poll *poll,
+/* A leap, or a substep; the last of an iteration ends it. */
+static msr_status advance(msr_state *state, const msr_system *system, const msri_poll *poll,
                           msr_error *err) {
-  msr_status status = MSR_OK;
-  while (state->substep < state->plan->figures.substeps && status == MSR_OK) {
-    const uint64_t before = state->substep;
-    if (poll->call) status = poll->call(poll->data, state);
-    if (status == MSR_OK && msri_leaps(state)) status = msri_leap(state, system, poll);
-    if (status == MSR_OK && state->substep == before) status = substep(state, system, err);
-  }
-  if (status != MSR_OK) return status;
-  state->substep = 0;
-  state->iteration++;
-  return MSR_OK;
+  const uint64_t before = state->substep;
+  msr_status status = msri_leaps(state) ? msri_leap(state, system, poll) : MSR_OK;
+  if (status == MSR_OK && state->substep == before) status = substep(state, system, poll, err);
+  if (status == MSR_OK && state->substep == state->plan->figures.substeps)
+    state->substep = 0, state->iteration++;
+  return status;
 }
 
 /* Which iteration a status stopped, and why: what the integrator said, or which force it was. */
@@ -119,18 +117,22 @@ static msr_status explain(const msr_state *state, msr_status status, const msr_e
 }
 
 msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *poll, msr_error *err) {
-  const msr_system system = msri_state_system(state);
+  const uint64_t end = state->iteration + iterations;
   state->failed = NULL;
   msr_status status = msri_guard_begin(state, err);
-  if (status != MSR_OK) return status;
-  for (uint64_t i = 0; i < iterations; i++) {
+  if (status == MSR_OK) status = msri_care_begin(state, err);
+  msr_system system = msri_state_system(state);
+  while (status == MSR_OK && state->iteration < end) {
     msr_error said = {MSR_OK, ""};
-    status = iterate(state, &system, poll, &said);
+    status = advance(state, &system, poll, &said);
     if (status != MSR_OK) return explain(state, status, &said, err);
-    if (state->iteration % MSRI_GUARD_PERIOD == 0) status = msr_state_check(state, err);
-    if (status != MSR_OK) return status;
+    const msr_status verdict = msri_guard_watch(state, err);
+    bool turned = false;
+    status = msri_care_watch(state, verdict == MSR_EUNSTABLE, &turned, err);
+    if (turned) system = msri_state_system(state);
+    if (status == MSR_OK && !turned) status = verdict;
   }
-  return MSR_OK;
+  return status;
 }
 
 msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err) {

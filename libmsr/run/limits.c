@@ -1,0 +1,111 @@
+/* limits.c - the largest stable steps of a plan: h omega may reach the integrator's limit on the
+ * imaginary axis, and omega^2 is the largest eigenvalue of M^-1 K, at rest or at the worst stretch.
+ */
+#include "run/limits.h"
+
+#include "solvers/tangent.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- Frequencies */
+
+static msr_status add_rates(msri_start *s) {
+  for (size_t i = 0; i < s->plan->n_terms; i++) {
+    const msri_term *term = &s->plan->term[i];
+    double of_x = 0, of_v = 0;
+    if (term->force == &msr_force_springs || !term->force->rates) continue;
+    const msr_status status = term->force->rates(term->self, &s->view, &of_x, &of_v);
+    if (status != MSR_OK) return status;
+    s->other2 += of_x;
+    *(term->force->flow ? &s->flow : &s->midpoint) += of_v;
+  }
+  return MSR_OK;
+}
+
+static bool pulls(const msr_plan *plan) {
+  for (size_t i = 0; i < plan->n_terms; i++)
+    if (plan->term[i].force == &msr_force_springs) return true;
+  return false;
+}
+
+/* Is the object one full rectangle of 4 neighbours, and nothing else? Its sides go to side[2]. */
+static bool is_rectangle(const msr_plan *plan, const msr_view *s, double side[2]) {
+  if (s->n == 0 || s->n != plan->n_picture || plan->mesh.n_added > 0 || s->springs->n_anchors > 0)
+    return false;
+  double left = s->x[0], right = left, low = s->y[0], high = low;
+  for (size_t i = 0; i < s->n; i++) {
+    left = msri_min(left, s->x[i]), right = msri_max(right, s->x[i]);
+    low = msri_min(low, s->y[i]), high = msri_max(high, s->y[i]);
+  }
+  side[0] = right - left + 1, side[1] = high - low + 1;
+  return side[0] * side[1] == (double)s->n &&
+         (double)s->springs->n == 2 * (double)s->n - side[0] - side[1];
+}
+
+/* The highest mode of a chain of n masses with free ends, in units of k/m. */
+static double chain(double n) {
+  const double pi = 3.14159265358979323846;
+  return 4 * pow(sin((n - 1) / (2 * n) * pi), 2);
+}
+
+/* At rest only chains along their direction swing; stretched, x and y alike along both. */
+static double rectangle_omega2(const msr_plan *plan, msri_stretch stretch, const double side[2]) {
+  const double a = chain(side[0]), b = chain(side[1]);
+  return plan->mesh.lattice_k / plan->uniform_mass *
+         (stretch == MSRI_AS_THEY_ARE ? msri_max(a, b) : a + b);
+}
+
+static msr_status frequency(const msri_start *s, msri_stretch stretch, msr_limit *limit) {
+  double omega2 = 0, bound = 0, side[2];
+  msr_status status = MSR_OK;
+  if (pulls(s->plan)) status = msr_force_springs.rates(NULL, &s->view, &bound, &(double){0});
+  if (status == MSR_OK && bound > 0 && is_rectangle(s->plan, &s->view, side)) {
+    omega2 = rectangle_omega2(s->plan, stretch, side);
+    limit->found = MSR_FOUND_CLOSED_FORM;
+  } else if (status == MSR_OK) {
+    status = msri_tangent_largest(&s->view, stretch, bound, &omega2, &limit->iterations);
+    limit->found = MSR_FOUND_LANCZOS;
+  }
+  if (s->other2 > 0) limit->found = MSR_FOUND_BOUND;
+  limit->omega = sqrt(omega2 + s->other2);
+  return status;
+}
+
+static msr_status find_undamped(const msri_start *s, msri_stretch stretch, msr_limit *limit) {
+  const msr_status status = frequency(s, stretch, limit);
+  const double reach = s->plan->figures.integrator->stability;
+  limit->step = limit->omega > 0 ? reach / limit->omega : (double)INFINITY;
+  return status;
+}
+
+/* ---- All of it */
+
+static void say_none_or_any(msr_limit *limit) {
+  if (limit->step > 0 && !isinf(limit->step)) return;
+  limit->found = limit->step > 0 ? MSR_FOUND_ANY : MSR_FOUND_NONE;
+  limit->iterations = 0;
+}
+
+msr_status msr_plan_stability(const msr_plan *plan, msr_stability *stability, msr_error *err) {
+  const size_t n = plan->figures.masses;
+  double *q = msri_alloc(4 * n, sizeof *q, "the stable step", err);
+  if (!q) return MSR_ENOMEM;
+  msri_plan_start(plan, q, q + n, q + 2 * n, q + 3 * n);
+  msri_start s = {.plan = plan, .view = msri_plan_view(plan, 0, q, q + 2 * n)};
+  msr_stability found = {.bound = plan->figures.stable_step};
+  msr_error said = {MSR_OK, ""};
+  msr_status status = add_rates(&s);
+  if (status == MSR_OK) status = find_undamped(&s, MSRI_AS_THEY_ARE, &found.at_rest);
+  if (status == MSR_OK) status = find_undamped(&s, MSRI_WITHOUT_END, &found.stretched);
+  found.damped = found.at_rest;
+  if (status == MSR_OK) status = msri_limits_damp(&s, &found.damped, &said);
+  say_none_or_any(&found.at_rest);
+  say_none_or_any(&found.stretched);
+  say_none_or_any(&found.damped);
+  free(q);
+  if (status != MSR_OK)
+    return msri_hand_on(err, status, &said, "the stable step: %s", msr_status_text(status));
+  *stability = found;
+  return MSR_OK;
+}
