@@ -79,6 +79,17 @@ static void print_leaps(const watch *w, const msr_state *state) {
           w->plan.leaps->name, 100 * (double)work.leapt / all);
 }
 
+static void tell_of_care(const watch *w, const msr_state *state) {
+  const msr_work work = msr_state_work(state);
+  char text[200];
+  if (work.careful == UINT64_MAX) return;
+  snprintf(text, sizeof text,
+           "from t = %.6g s on by steps of energy-momentum: energy came from nowhere, as substeps "
+           "of %s couldn't follow what is crushed there",
+           (double)work.careful * w->plan.dt, w->plan.integrator->name);
+  tell(w->s, "note", text);
+}
+
 /* The guard lets a run heat much further before it ends it. */
 static void warn_of_heating(const watch *w, double gain) {
   char text[160];
@@ -100,5 +111,6 @@ void watch_print_summary(const watch *w, const msr_state *state) {
   if (w->s->verbose) print_energy(w);
   if (w->s->verbose) print_leaps(w, state);
   fputs("\n", stderr);
+  tell_of_care(w, state);
   warn_of_heating(w, msr_state_energy_gain(state));
 }

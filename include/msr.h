@@ -697,6 +697,8 @@ typedef struct msr_work {
   uint64_t steps, evaluations;
   uint64_t leaps, leapt; /* long steps (figures.leaps) among them, and the substeps that they took
                           * the place of */
+  uint64_t careful; /* the iteration from which on steps were those of energy-momentum, since energy
+                     * had come from nowhere; UINT64_MAX: never */
 } msr_work;
 MSR_API msr_work msr_state_work(const msr_state *state);
 

@@ -62,7 +62,7 @@ double msri_plan_safe_share(const msr_plan *plan, const msr_view *start) {
   const bool supports = plan->contact.drift != NULL;
   if (!plan->cares && msri_plan_crushes(plan, start)) return 0.5 / 64;
   if (!supports) return 0.9;
-  if (plan->cares) return 0.5;
+  if (plan->cares) return plan->conserves ? 0.42 : 0.5;
   const double crushed = by_fall(plan) / crushing;
   return crushed > 1 ? 0.5 / msri_min(crushed, 8) : 0.5;
 }

@@ -111,6 +111,12 @@ static msr_status add_contact(msr_plan *plan, const msr_scene *scene, msr_error 
   return msri_supports_create(plan->picture, &options, &plan->contact, err);
 }
 
+static bool conserves(const msr_plan *plan, const msr_scene *scene) {
+  for (size_t i = 0; i < plan->n_terms; i++)
+    if (!plan->term[i].force->conservative || plan->term[i].force->uses_time) return false;
+  return !plan->contact.drift || (scene->restitution == 1 && scene->friction == 0);
+}
+
 static bool listed(const msr_plan *plan, const msr_force *force) {
   for (size_t e = 0; e < plan->n_effects; e++)
     if (plan->effect[e].force == force) return true;
@@ -187,6 +193,7 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan
   msri_plan_start(plan, q, q + n, v, v + n);
   const msr_view start = msri_plan_view(plan, 0, q, v);
   status = call_for_effects(plan, scene, &start, err);
+  plan->conserves = conserves(plan, scene);
   plan->cares = automatic && msri_plan_can_leap(plan);
   plan->careful = plan->cares && msri_plan_crushes(plan, &start);
   if (status == MSR_OK) status = msri_plan_choose_step(plan, &start, substeps, err);

@@ -64,6 +64,7 @@ struct msr_plan {
   size_t n_effects;
   msri_leaping leaping;
   double safe_share; /* of the stable step, that steps are no larger than */
+  bool conserves;    /* nothing gives energy or takes it */
   bool cares;        /* states watch their energy, and step with care once it grows */
   bool careful;      /* from the start */
   msri_notes notes;

@@ -201,7 +201,11 @@ uint64_t msr_state_iteration(const msr_state *state) { return state->iteration; 
 uint64_t msr_state_contacts(const msr_state *state) { return state->contacts; }
 
 msr_work msr_state_work(const msr_state *state) {
-  return (msr_work){state->work.steps, state->evaluations, state->leap.leaps, state->leap.leapt};
+  return (msr_work){.steps = state->work.steps,
+                    .evaluations = state->evaluations,
+                    .leaps = state->leap.leaps,
+                    .leapt = state->leap.leapt,
+                    .careful = state->care.on ? state->care.at : UINT64_MAX};
 }
 
 uint64_t msr_state_calls(const msr_state *state, size_t effect) {

@@ -155,7 +155,8 @@ static balance balance_of(const msr_state *state, double *lost) {
 
 double msri_guard_gain(const msr_state *state, double *lost) {
   const balance b = balance_of(state, lost);
-  return b.gain <= 0 ? 0 : b.gain / b.given;
+  const double gain = state->plan->conserves ? fabs(b.gain) : b.gain;
+  return gain <= 0 ? 0 : gain / b.given;
 }
 
 msr_status msr_state_check(msr_state *state, msr_error *err) {
