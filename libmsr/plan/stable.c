@@ -58,7 +58,8 @@ static double safe_step(const msr_plan *plan, const msr_view *start) {
   const msr_plan_figures *f = &plan->figures;
   const bool follows = plan->contact.drift || f->integrator->symplectic;
   const bool any = f->integrator->implicit && isinf(f->stable_step) && f->omega > 0;
-  return msri_plan_safe_share(plan, start) * (any && follows ? resolved / f->omega : f->stable_step);
+  return msri_plan_safe_share(plan, start) *
+         (any && follows ? resolved / f->omega : f->stable_step);
 }
 
 /* The fewest equal steps of dt that are safe. */
