@@ -403,6 +403,29 @@ static void safe_steps_are_smaller_where_springs_are_crushed(void **unused) {
   }
 }
 
+/* A pair by a program, above a support or not: 2 m v^2 / 2 is 0.15 k L^2 / 2 at 33.5 px/s, and
+ * k (L - l)^2 / 2 is at 0.613 px; 2 px is where a spring has just enough to get to no length. */
+static void safe_steps_are_smaller_where_the_start_crushes_springs(void **unused) {
+  (void)unused;
+  static const struct {
+    double speed, length; /* of both masses, of the spring of L = 1 */
+    bool below;
+    double share;
+  } rows[] = {{0, 1, true, 0.5},         {33, 1, true, 0.5},     {34, 1, true, 0.5 / 64},
+              {1e6, 1, true, 0.5 / 64},  {1e6, 1, false, 0.9},   {0, 0.62, false, 0.9},
+              {0, 0.6, false, 0.5 / 64}, {0, 0, true, 0.5 / 64}, {0, 2, false, 0.9},
+              {0, 3, false, 0.5 / 64}};
+  for (size_t i = 0; i < LENGTH(rows); i++) {
+    msr_scene *scene = scene_of(rows[i].below ? ".....\n.....\n#####\n" : ".....\n", &usual, NULL);
+    add_mass(scene, 1, 1.5, rows[i].speed, 0, 0.1);
+    add_mass(scene, 1 + rows[i].length, 1.5, rows[i].speed, 0, 0.1);
+    must(msr_scene_add_spring(scene, 0, 1, 1500, 1, &why));
+    const msr_plan_figures f = figures_of(scene, NULL, 0);
+    if (!near(f.safe_step, rows[i].share * f.stable_step))
+      fail_msg("row %zu: %g of the stable step", i, f.safe_step / f.stable_step);
+  }
+}
+
 static void notes_say_what_was_not_asked_for(void **unused) {
   (void)unused;
   static const struct {
@@ -634,6 +657,7 @@ int main(void) {
       cmocka_unit_test(the_stable_step_is_below_what_explodes),
       cmocka_unit_test(substeps_are_as_few_as_is_safe),
       cmocka_unit_test(safe_steps_are_smaller_where_springs_are_crushed),
+      cmocka_unit_test(safe_steps_are_smaller_where_the_start_crushes_springs),
       cmocka_unit_test(notes_say_what_was_not_asked_for),
       cmocka_unit_test(a_method_without_a_limit_of_damping_is_planned),
       cmocka_unit_test(an_undeclared_splitting_has_room),

@@ -17,7 +17,7 @@ typedef enum wanted {
   STOPS     /* any error with a message: the case is beyond what numbers can hold */
 } wanted;
 
-enum { NAME_SIZE = 40 };
+enum { NAME_SIZE = 40 }; /* with the 0 */
 
 typedef struct hard_case {
   char name[NAME_SIZE];
