@@ -24,7 +24,6 @@ typedef struct problem {
   bool *inside; /* [height][width]: air that is within reach of the masses at the start */
   size_t n, n_bonds;
   double *x, *y, *vx, *vy, *m; /* [n] */
-  int *body;                   /* [n] */
   bond *bonds;                 /* [n_bonds] */
   bool drawn;             /* masses in reading order, at rest, springs of 1 px to 4 neighbours */
   double mass, stiffness; /* of all, if drawn; of most, if not */

@@ -16,7 +16,6 @@ static void make_room(problem *p, size_t most, size_t width, size_t height) {
   p->black = need(width * height, sizeof *p->black);
   double **arrays[] = {&p->x, &p->y, &p->vx, &p->vy, &p->m};
   for (size_t a = 0; a < 5; a++) *arrays[a] = need(most, sizeof(double));
-  p->body = need(most, sizeof *p->body);
   p->bonds = need(3 * most, sizeof *p->bonds);
 }
 
@@ -34,9 +33,9 @@ static void make_walls(problem *p, size_t most, size_t height) {
   fill(p, WIDTH - 1, 0, 1, height);
 }
 
-static size_t add_mass(problem *p, double x, double y, double m, int body) {
+static size_t add_mass(problem *p, double x, double y, double m) {
   const size_t i = p->n++;
-  p->x[i] = x, p->y[i] = y, p->m[i] = m, p->body[i] = body;
+  p->x[i] = x, p->y[i] = y, p->m[i] = m;
   return i;
 }
 
@@ -45,12 +44,12 @@ static void add_bond(problem *p, size_t i, size_t j, double k, double L) {
 }
 
 /* A block of COLUMNS x ROWS from its lower left pixel; springs are of length L, masses 1 apart. */
-static void add_block(problem *p, size_t left, size_t bottom, double L, int body) {
+static void add_block(problem *p, size_t left, size_t bottom, double L) {
   const size_t first = p->n;
   const double k = p->stiffness;
   for (size_t r = ROWS; r-- > 0;)
     for (size_t c = 0; c < COLUMNS; c++)
-      add_mass(p, (double)(left + c) + 0.5, (double)(bottom + r) + 0.5, p->mass, body);
+      add_mass(p, (double)(left + c) + 0.5, (double)(bottom + r) + 0.5, p->mass);
   for (size_t r = 0; r < ROWS; r++)
     for (size_t c = 0; c < COLUMNS; c++) {
       const size_t i = first + r * COLUMNS + c;
@@ -64,7 +63,7 @@ static void drop_from(problem *p, size_t bottom, size_t height) {
   make_walls(p, 2 * MASSES, height);
   fill(p, 16, 10, 2, 2);
   fill(p, 29, 10, 2, 2);
-  add_block(p, 15, bottom, 1, 0);
+  add_block(p, 15, bottom, 1);
 }
 
 static void drop(problem *p) { drop_from(p, 24, HEIGHT); }
@@ -82,7 +81,7 @@ static void read_picture(problem *p, const msr_picture *picture) {
       const unsigned char *rgb = picture->rgb + 3 * at;
       p->black[up * p->width + c] = rgb[0] + rgb[1] + rgb[2] == 0;
       if (!is_mass(rgb)) continue;
-      const size_t i = add_mass(p, (double)c + 0.5, (double)up + 0.5, p->mass, 0);
+      const size_t i = add_mass(p, (double)c + 0.5, (double)up + 0.5, p->mass);
       index[at] = i + 1;
       if (c > 0 && index[at - 1]) add_bond(p, index[at - 1] - 1, i, p->stiffness, 1);
       if (r > 0 && index[at - picture->width])
@@ -129,7 +128,7 @@ static void make_coincident(problem *p) {
   p->drawn = false;
   drop(p);
   for (size_t i = 0; i < MASSES; i++) {
-    const size_t twin = add_mass(p, p->x[i], p->y[i], p->mass, 0);
+    const size_t twin = add_mass(p, p->x[i], p->y[i], p->mass);
     add_bond(p, i, twin, p->stiffness, i % 2 ? 1 : 0);
   }
 }
@@ -137,7 +136,7 @@ static void make_coincident(problem *p) {
 static void throw_block(problem *p, double speed) {
   p->drawn = false;
   make_walls(p, MASSES, HEIGHT);
-  add_block(p, 15, 15, 1, 0);
+  add_block(p, 15, 15, 1);
   for (size_t i = 0; i < MASSES; i++) p->vx[i] = speed, p->vy[i] = speed / 10;
   p->gravity = 0;
 }
@@ -154,7 +153,7 @@ static void make_squeezed(problem *p) {
   fill(p, 14, 15 + ROWS, COLUMNS + 2, 1);
   fill(p, 14, 15, 1, ROWS);
   fill(p, 15 + COLUMNS, 15, 1, ROWS);
-  add_block(p, 15, 15, 2, 0);
+  add_block(p, 15, 15, 2);
 }
 
 /* Critical is 2 sqrt(k m). */
@@ -175,7 +174,7 @@ static void make_wind(problem *p) {
 
 static void make_rest(problem *p) {
   make_walls(p, MASSES, HEIGHT);
-  add_block(p, 15, 11, 1, 0);
+  add_block(p, 15, 11, 1);
   p->restitution = 0.5;
   p->damping = 1;
   p->iterations = 100000;
@@ -185,8 +184,8 @@ static void make_rest(problem *p) {
 
 static void make_collision(problem *p) {
   make_walls(p, 2 * MASSES, HEIGHT);
-  add_block(p, 20, 24, 1, 1);
-  add_block(p, 15, 1, 1, 0);
+  add_block(p, 20, 24, 1);
+  add_block(p, 15, 1, 1);
   p->diameter = 1;
 }
 

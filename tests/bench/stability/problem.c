@@ -77,6 +77,6 @@ void problem_create(problem *p, const hard_case *from) {
 }
 
 void problem_free(problem *p) {
-  void *blocks[] = {p->black, p->inside, p->x, p->y, p->vx, p->vy, p->m, p->body, p->bonds};
+  void *blocks[] = {p->black, p->inside, p->x, p->y, p->vx, p->vy, p->m, p->bonds};
   for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) free(blocks[i]);
 }

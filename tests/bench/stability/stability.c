@@ -67,7 +67,6 @@ static void judge(const problem *p, const sight *s, char *text, size_t size) {
                 {s->how != RUNAWAY && s->gain > p->allowed, "heats"},
                 {s->out > 0, "escapes"},
                 {s->in > 0, "sinks in"},
-                {s->through, "falls through"},
                 {s->how == LATE, "too slow"},
                 {s->how == DONE && p->rests && s->speed > at_rest, "no rest"},
                 {p->elastic && s->loss > kept, "damped"}};
@@ -93,7 +92,7 @@ static void print_row(const problem *p, const char *name, const sight *s) {
   char text[80];
   judge(p, s, text, sizeof text);
   printf(" %7.2f  %s\n", s->seconds, text);
-  if (s->how == STOPPED) printf("            %s\n", s->text);
+  if (s->how == STOPPED) printf("%12s%.*s\n", "", (int)strcspn(s->text, ":"), s->text);
 }
 
 static void print_head(const problem *p) {

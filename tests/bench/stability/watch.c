@@ -77,12 +77,6 @@ static void look_at_places(const scene *s, sight *seen) {
   if (out > seen->out) seen->out = out;
 }
 
-static void look_at_bodies(const scene *s, sight *seen) {
-  double y[2] = {0}, n[2] = {0};
-  for (size_t i = 0; i < s->p->n; i++) y[s->p->body[i]] += s->y[i], n[s->p->body[i]]++;
-  seen->through |= y[1] / n[1] < y[0] / n[0];
-}
-
 static double fastest(const scene *s) {
   double most = 0;
   for (size_t i = 0; i < s->p->n; i++) most = fmax(most, hypot(s->vx[i], s->vy[i]));
@@ -102,7 +96,6 @@ static void look(const scene *s, uint64_t iteration, sight *seen) {
   seen->gain = fmax(seen->gain, change);
   seen->loss = fmax(seen->loss, -change);
   look_at_places(s, seen);
-  look_at_bodies(s, seen);
   if (iteration >= p->iterations - p->iterations / 10) seen->speed = fmax(seen->speed, fastest(s));
   if (change > runaway) seen->how = RUNAWAY;
 }

@@ -16,7 +16,6 @@ typedef struct sight {
   double depth;      /* the deepest a mass was in a support [px] */
   size_t in, out;    /* the most masses in supports by more than 0.01 px; beyond them */
   double speed;      /* largest over the last tenth of the run [px/s] */
-  bool through;      /* the upper body's middle came below the lower one's */
 } sight;
 
 /* In a process of its own, which is ended after `limit` seconds of the processor. */
