@@ -50,10 +50,11 @@ EX_SRC   := $(wildcard examples/*.c)
 BITS_SRC := $(wildcard tests/bits/*.c)
 BENCH_SRC := $(wildcard tests/bench/*.c tests/bench/*.cc)
 HARD_SRC := $(wildcard tests/stability/*.c)
+BESIDE_SRC := $(wildcard tests/bench/stability/*.c tests/bench/stability/*.cc)
 SOURCES  := $(LIB_SRC) $(CLI_SRC) $(TEST_SRC) $(FUZZ_SRC) $(BITS_SRC) $(HARD_SRC) $(BENCH_SRC) \
-             $(EX_SRC)
+            $(BESIDE_SRC) $(EX_SRC)
 HEADERS  := $(wildcard include/*.h libmsr/*/*.h cli/*.h tests/*.h tests/fuzz/*.h tests/stability/*.h \
-             tests/bench/*.h)
+            tests/bench/*.h tests/bench/stability/*.h)
 DOCS     := $(wildcard README.md LICENSE CHANGELOG.md docs/*.md docs/images/*.png include/*.h \
              examples/*.md examples/*.c examples/scenes/*)
 MAN      := $(wildcard docs/*.1)
@@ -259,6 +260,16 @@ bench-accuracy: $(BENCH) $(BENCH_RHS)
 bench-guard: $(BUILD)/msr
 	@sh tests/bench/guard.sh $<
 
+BESIDE = $(BUILD)/bench/stability
+
+$(BESIDE): $(call object,$(BESIDE_SRC)) $(BUILD)/libmsr.a
+	@mkdir -p $(@D)
+	$(call show,LINK)$(CXX) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lchipmunk -lbox2d $(GSL_LIBS)
+
+## bench-stability: hard cases, beside other libraries; some minutes
+bench-stability: $(BESIDE)
+	@$(BESIDE)
+
 # ---- Report --------------------------------------------------------------------------------------
 
 STUDIES = turn assignment pendulum
@@ -332,7 +343,7 @@ help:
 
 .PHONY: all examples everything deps demo test check check-gcc check-clang check-san \
         check-valgrind check-tidy check-cppcheck check-format format coverage fuzz run-fuzzers \
-        stability mutations bench-accuracy bench-guard report figures install uninstall clean help
+        stability mutations bench-accuracy bench-guard bench-stability report figures install uninstall clean help
 FORCE:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(call object,$(SOURCES)))

@@ -9,6 +9,7 @@ has() { command -v "$1"; }
 header() { printf '#include <%s>\n' "$@" | $cc -E -; }
 scipy() { python3 -c 'import scipy' || /usr/bin/python3 -c 'import scipy'; }
 numpy() { python3 -c 'import numpy' || /usr/bin/python3 -c 'import numpy'; }
+header_cxx() { printf "#include <%s>\n" "$@" | g++ -E -x c++ -; }
 fuzzer() { echo 'int LLVMFuzzerTestOneInput(void) { return 0; }' |
   clang -fsanitize=fuzzer,address -xc - -o /dev/null; }
 
@@ -36,6 +37,9 @@ bench    | has g++                             | g++             | gcc-c++      
 bench    | header cvode/cvode.h                | libsundials-dev | sundials-devel        | sundials     | sundials
 bench    | header boost/version.hpp            | libboost-dev    | boost-devel           | boost        | boost
 bench    | scipy                               | python3-scipy   | python3-scipy         | python-scipy | scipy
+beside   | has g++                             | g++             | gcc-c++               | gcc          | gcc
+beside   | header chipmunk/chipmunk.h          | libchipmunk-dev | chipmunk-devel        | chipmunk     | chipmunk
+beside   | header_cxx box2d/box2d.h             | libbox2d-dev    | Box2D-devel           | box2d        | box2d
 fuzz     | fuzzer                              | libclang-rt-dev | compiler-rt           | compiler-rt  | llvm
 report   | has gnuplot                         | gnuplot-nox     | gnuplot               | gnuplot      | gnuplot
 report   | kpsewhich booktabs.sty lmodern.sty  | texlive-latex-recommended lmodern | texlive-collection-latexrecommended texlive-lm | texlive-latexrecommended texlive-fontsrecommended | texlive
@@ -48,6 +52,7 @@ for goal in "${@:-everything}"; do
   all | demo | examples | install | uninstall | clean | help) ;;
   test) groups="$groups test" ;;
   bench-accuracy) groups="$groups bench" ;;
+  bench-stability) groups="$groups beside" ;;
   check | coverage | fuzz) groups="$groups test $goal" ;;
   report | figures) groups="$groups report" ;;
   *) groups='build test check coverage fuzz' ;;

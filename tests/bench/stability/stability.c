@@ -1,0 +1,147 @@
+/* stability.c [CASE ...] - hard cases put to libmsr, to the assignment's own algorithm and to other
+ * libraries, side by side. */
+#include "cases.h"
+#include "watch.h"
+
+#include "msr.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+/* Of the processor, a run [s]. */
+static const unsigned limit = 20;
+
+/* A body at rest is slower [px/s]. */
+static const double at_rest = 0.01;
+
+/* What loses more than this share, where nothing takes energy away, is damped. */
+static const double kept = 0.1;
+
+static const struct column {
+  const char *name, *settings;
+  const solver *solver;
+  bool fine; /* takes as many steps as libmsr does */
+} columns[] = {
+    {"libmsr", "no option: Verlet, substeps by the plan", &solver_library, false},
+    {"assignment", "symplectic Euler, one step per DT", &solver_assignment, false},
+    {"assignment+", "the same with as many steps as libmsr takes", &solver_assignment, true},
+    {"GSL rkf45", "odeiv2 driver, absolute tolerance 1e-6", &solver_gsl, false},
+    {"Chipmunk2D", "a pixel is a unit; one step per DT, 10 iterations", &solver_chipmunk, false},
+    {"Chipmunk2D+", "the same with as many steps as libmsr takes", &solver_chipmunk, true},
+    {"Box2D", "a pixel is 0.1 m; one step per DT, 8 and 3 iterations", &solver_box2d, false},
+};
+enum { COLUMNS = sizeof columns / sizeof *columns, MOST_CASES = 16 };
+
+#ifdef __clang__
+static const char compiler[] = __VERSION__;
+#else
+static const char compiler[] = "gcc " __VERSION__;
+#endif
+
+static void print_machine(void) {
+  char line[128], day[32], model[128] = "unknown machine";
+  const time_t t = time(NULL);
+  strftime(day, sizeof day, "%Y-%m-%d", localtime(&t));
+  FILE *cpus = fopen("/proc/cpuinfo", "r");
+  while (cpus && fgets(line, sizeof line, cpus))
+    if (sscanf(line, "model name : %127[^\n]", model) == 1) break;
+  if (cpus) fclose(cpus);
+  printf("%s, %s, %s, libmsr %s; one thread.\n", day, model, compiler, msr_version());
+  printf("GSL %s, Chipmunk2D %s, Box2D %s.\n", gsl_version_text(), chipmunk_version(),
+         box2d_version());
+  for (size_t i = 0; i < COLUMNS; i++) printf("  %-11s %s\n", columns[i].name, columns[i].settings);
+  printf("A run is given %u s of the processor.\n", limit);
+}
+
+/* All that is wrong. */
+static void judge(const problem *p, const sight *s, char *text, size_t size) {
+  const struct fault {
+    bool found;
+    const char *name;
+  } faults[] = {{s->how == NOT_FINITE, "not finite"},
+                {s->how == CRASHED, "crashes"},
+                {s->how == STOPPED, "stops"},
+                {s->how == RUNAWAY, "explodes"},
+                {s->how != RUNAWAY && s->gain > p->allowed, "heats"},
+                {s->out > 0, "escapes"},
+                {s->in > 0, "sinks in"},
+                {s->how == LATE, "too slow"},
+                {s->how == DONE && p->rests && s->speed > at_rest, "no rest"},
+                {p->elastic && s->loss > kept, "damped"}};
+  size_t at = 0;
+  text[0] = '\0';
+  for (size_t i = 0; i < sizeof faults / sizeof *faults && at < size; i++)
+    if (faults[i].found)
+      at += (size_t)snprintf(text + at, size - at, "%s%s", at > 0 ? ", " : "", faults[i].name);
+  if (at == 0) snprintf(text, size, "%s", s->how == DECLINED ? "-" : "sound");
+}
+
+static void print_row(const problem *p, const char *name, const sight *s) {
+  printf("%-11s", name);
+  if (s->how == DECLINED) {
+    printf(" %-67s not put: %s\n", "", s->text);
+    return;
+  }
+  printf(" %+10.2g %10.2g %8.2g %6zu %6zu %9.2g", s->gain, -s->loss, s->depth, s->in, s->out, s->t);
+  if (s->how == DONE)
+    printf(" %9.2g", s->speed);
+  else
+    printf(" %9s", "-");
+  char text[80];
+  judge(p, s, text, sizeof text);
+  printf(" %7.2f  %s\n", s->seconds, text);
+  if (s->how == STOPPED) printf("%12s%.*s\n", "", (int)strcspn(s->text, ":"), s->text);
+}
+
+static void print_head(const problem *p) {
+  printf("\n== %s: %s; %zu masses\n", p->name, p->text, p->n);
+  printf("%-11s %10s %10s %8s %6s %6s %9s %9s %7s\n", "", "growth", "loss", "depth", "in", "out",
+         "until s", "speed", "CPU s");
+}
+
+static void put(const hard_case *from, char (*verdicts)[80]) {
+  problem p;
+  problem_create(&p, from);
+  print_head(&p);
+  problem fine = p;
+  const uint64_t substeps = library_substeps(&p);
+  fine.dt /= (double)substeps;
+  fine.iterations *= substeps;
+  for (size_t i = 0; i < COLUMNS; i++) {
+    const sight seen = watch(columns[i].solver, columns[i].fine ? &fine : &p, limit);
+    print_row(&p, columns[i].name, &seen);
+    judge(&p, &seen, verdicts[i], sizeof verdicts[i]);
+  }
+  problem_free(&p);
+}
+
+static bool is_asked(int argc, char **argv, const char *name) {
+  bool asked = argc == 1;
+  for (int i = 1; i < argc; i++) asked |= strcmp(argv[i], name) == 0;
+  return asked;
+}
+
+/* The first fault of each. */
+static void print_summary(char (*verdicts)[COLUMNS][80]) {
+  printf("\n%-12s", "In short");
+  for (size_t i = 0; i < COLUMNS; i++) printf(" %-13s", columns[i].name);
+  printf("\n");
+  for (size_t c = 0; hard_cases[c].name; c++) {
+    if (!verdicts[c][0][0]) continue;
+    printf("%-12s", hard_cases[c].name);
+    for (size_t i = 0; i < COLUMNS; i++)
+      printf(" %-13.*s", (int)strcspn(verdicts[c][i], ","), verdicts[c][i]);
+    printf("\n");
+  }
+}
+
+int main(int argc, char **argv) {
+  static char verdicts[MOST_CASES][COLUMNS][80];
+  setvbuf(stdout, NULL, _IOLBF, 0);
+  print_machine();
+  for (size_t c = 0; hard_cases[c].name; c++)
+    if (is_asked(argc, argv, hard_cases[c].name)) put(&hard_cases[c], verdicts[c]);
+  print_summary(verdicts);
+}
