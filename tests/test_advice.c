@@ -88,7 +88,7 @@ static bool follow_advice(const trouble *t, const msr_integrator *method, double
   close_world(w);
   const double dt = times * (f.stable_step > 0 ? f.stable_step : 2 / f.omega);
   msr_error err, again = {.message = "it heats"};
-  double gain, more;
+  double gain = 0, more = 0;
   if (survives(t, method, dt, 1, &gain, &err)) return false;
   assert_non_null(strstr(err.message, "the mass of pixel ("));
   assert_non_null(strstr(err.message, "; its spring to "));
@@ -194,11 +194,26 @@ static void ends_of_the_range(void **unused) {
   for (double g = 1; g > 1e-16; g /= 3) must(run_of(0, 1e-307, g, 0.005, &why));
 }
 
+/* Far apart in mass, and sound: a mass of 1e300 kg beside a stiff pair of 1e-5 kg. */
+static void a_star_and_a_pair(void **unused) {
+  (void)unused;
+  msr_scene *scene = empty_scene(1e-14);
+  must(msr_scene_set_times(scene, 1e-14, 1000, 1, &why));
+  add_mass(scene, 0, 0, 0, 0, 1e300);
+  add_mass(scene, 5, 0, 0, 0, 1e-5);
+  add_mass(scene, 6, 0, 1, 0, 1e-5);
+  must(msr_scene_add_spring(scene, 1, 2, 1e20, 1, &why));
+  world w = open_world(scene, NULL, 1);
+  must(msr_run(w.state, NULL, &why));
+  close_world(w);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(what_is_advised_works),
       cmocka_unit_test(the_spring_and_the_moment_are_named),
       cmocka_unit_test(ends_of_the_range),
+      cmocka_unit_test(a_star_and_a_pair),
   };
   return cmocka_run_group_tests_name("advice", tests, NULL, NULL);
 }
