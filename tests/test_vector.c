@@ -56,11 +56,27 @@ static void the_largest_is_found_wherever_it_is(void **state) {
   }
 }
 
+/* Of any length, within rounding of a plain sum: n terms of one sign. */
+static void squares_are_all_summed(void **unused) {
+  (void)unused;
+  double x[MOST], w[MOST];
+  for (size_t n = 0; n <= MOST; n++) {
+    double plain = 0, weighted = 0;
+    for (size_t i = 0; i < n; i++) {
+      x[i] = sin((double)i + 1), w[i] = 1 + (double)(i % 7);
+      plain += x[i] * x[i], weighted += w[i] * x[i] * x[i];
+    }
+    assert_true(fabs(msri_sum_squares(n, NULL, x) - plain) <= 2 * MOST * DBL_EPSILON * plain);
+    assert_true(fabs(msri_sum_squares(n, w, x) - weighted) <= 2 * MOST * DBL_EPSILON * weighted);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sums_are_those_of_a_plain_loop),
       cmocka_unit_test(the_largest_is_found_wherever_it_is),
       cmocka_unit_test(products_are_those_of_a_plain_loop),
+      cmocka_unit_test(squares_are_all_summed),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,8 +27,8 @@
 /* Motion that rounding may make, against the springs: far below what can be seen. */
 static const double rounding = 1e-6; /* [px] */
 
-/* Below it energies lose digits, as products of what is small; above it sums may overflow. */
-static const double smallest = 1e-290, largest = 1e290;
+/* Heavy masses beside stiff springs of light ones would make it infinite. */
+static const double largest = 1e290;
 
 enum { GLANCE = 16, LOOK = 128 }; /* steps between two */
 
@@ -97,7 +97,7 @@ static double kick_energy(const msr_view *s, double h, const double *f) {
 static double rounding_energy(const msr_view *s, double omega) {
   double mass = 0;
   for (size_t i = 0; i < s->n; i++) mass += msr_view_mass(s, i);
-  return msri_min(mass * pow(omega * rounding, 2) / 2 + smallest, largest);
+  return msri_min(mass * pow(omega * rounding, 2) / 2, largest);
 }
 
 msr_status msri_guard_begin(msr_state *state, msr_error *err) {
