@@ -34,6 +34,7 @@ static msr_status add_push(const push *p, msr_scene *scene, msr_error *err) {
 static msr_status add_forces(const settings *s, msr_scene *scene, msr_error *err) {
   const msr_damping damping = {.z = s->damping};
   msr_status status = msr_scene_set_contact(scene, s->restitution, s->friction, err);
+  if (status == MSR_OK && s->collide) status = msr_scene_set_collisions(scene, s->diameter, err);
   if (status == MSR_OK && option_given(s, "--damping")) {
     status = msr_scene_add_force(scene, &msr_force_damping, &damping, err);
   }

@@ -62,7 +62,7 @@ static double crush(const msr_plan *plan) {
  * from about 0.15 on, has masses that pass through each other, whose force turns round within a
  * step: measured, up to 8 times smaller steps keep its energy to a few per cent. */
 static double safe_share(const msr_plan *plan) {
-  if (!plan->contact.drift) return 0.9;
+  if (!msri_plan_meets(plan)) return 0.9;
   const double crushed = crush(plan) / 0.15;
   return crushed > 1 ? 0.5 / msri_min(crushed, 8) : 0.5;
 }
@@ -76,7 +76,7 @@ static const double resolved = 2;
  * buckle. */
 static double safe_step(const msr_plan *plan) {
   const msr_plan_figures *f = &plan->figures;
-  const bool follows = plan->contact.drift || f->integrator->symplectic;
+  const bool follows = msri_plan_meets(plan) || f->integrator->symplectic;
   const bool any = f->integrator->implicit && isinf(f->stable_step) && f->omega > 0;
   return safe_share(plan) * (any && follows ? resolved / f->omega : f->stable_step);
 }
