@@ -11,13 +11,6 @@
 
 #include <math.h>
 
-/* A way may come as near as this between two free places, so that what slides around a disc in
- * straight steps does so freely; in squares. */
-static const double graze = 0.96;
-
-/* Rounding of squares. */
-static const double rounding = 1e-12;
-
 static double dot(msri_vec a, msri_vec b) { return a.x * b.x + a.y * b.y; }
 
 static double cross(msri_vec a, msri_vec b) { return a.x * b.y - a.y * b.x; }
@@ -28,19 +21,8 @@ static msri_vec along(msri_vec a, double s, msri_vec b) {
 
 static msri_vec scaled(msri_vec a, double s) { return (msri_vec){s * a.x, s * a.y}; }
 
-/* The distance below which they mustn't come. */
 static double floor_of(const msri_disc_pair *p) {
-  return msri_min(p->diameter, sqrt(dot(p->from, p->from)) + p->apart);
-}
-
-bool msri_disc_pair_meets(const msri_disc_pair *p) {
-  const double least = floor_of(p), least2 = least * least * (1 - rounding);
-  const msri_vec to = along(p->from, 1, p->way);
-  if (dot(to, to) < least2) return true;
-  const double b = -dot(p->from, p->way), way2 = dot(p->way, p->way);
-  if (!(b > 0 && b < way2)) return false;
-  const double c = cross(p->from, p->way);
-  return c * c < graze * least2 * way2;
+  return msri_disc_pair_floor(p, dot(p->from, p->from));
 }
 
 /* Coincident discs part in a direction of their own: a point on the circle from a number in -1
@@ -65,13 +47,13 @@ static msri_vec touch(const msri_disc_pair *p) {
 /* Does the collision in the middle leave both on the sides where they are? */
 static bool is_gentle(const msri_disc_pair *p, msri_vec n) {
   const double r = dot(p->from, n);
-  return dot(p->way, n) < 0 && r > 0 && r * r >= graze * p->diameter * p->diameter;
+  return dot(p->way, n) < 0 && r > 0 && r * r >= msri_disc_graze * p->diameter * p->diameter;
 }
 
 msri_vec msri_disc_pair_normal(const msri_disc_pair *p, double restitution) {
   const double r = sqrt(dot(p->from, p->from));
   if (r < 1e-9 * p->diameter) return any_direction(p->i, p->j);
-  if (r < p->diameter * (1 - rounding)) return scaled(p->from, 1 / r);
+  if (r < p->diameter * (1 - msri_disc_rounding)) return scaled(p->from, 1 / r);
   const msri_vec middle = along(p->from, restitution / (1 + restitution), p->way);
   const msri_vec n = scaled(middle, 1 / sqrt(dot(middle, middle)));
   if (is_gentle(p, n)) return n;

@@ -2,18 +2,15 @@
  * kept.
  *
  * Masses first go where supports let them. Then each pair whose straight ways meet is put right,
- * one after the other in the order of their numbers, a few times over: the way along the normal
- * becomes that of their centre of mass, and the velocity along it is reflected (disc_pair.c). Who
- * is pushed into a support is stopped by it. Who is still in the way of another then goes back to
- * its old place for this step, and so on; as the old places were free, that ends, and no disc is
- * ever inside or beyond another, at any speed.
+ * one after the other in the order of their numbers, a few times over; who still meets another goes
+ * the same way as that other (drift.c). As the old places were free, that ends, and no disc is ever
+ * inside or beyond another, at any speed.
  *
- * Two that press on each other, so that they would be back within a step, come to rest: they leave
- * with what the rest of the step takes away. */
+ * Which pairs are looked at depends on the past; what becomes of them doesn't, and those that are
+ * left out don't meet. */
 #include "contacts/discs.h"
 
-#include "contacts/disc_pair.h"
-#include "contacts/near.h"
+#include "contacts/drift.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -26,191 +23,55 @@ struct msri_discs {
   msri_ties ties;
 };
 
-enum { MOST_PASSES = 16, MOST_RETREATS = 64 };
+enum { ALIGNMENT = 16, MOST_PASSES = 12, MOST_LISTS = 6, MOST_JOINS = 64 };
 
 /* Discs that overlap part at so many diameters a second, by no more than a share of one in a step.
  */
 static const double parting_speed = 10, most_parting = 0.02;
 
-/* A drift under way. */
-typedef struct motion {
-  const msri_discs *discs;
-  const msri_contact *supports;
-  double h;
-  const double *q0;   /* [2n]: places before */
-  double *q, *v;      /* [2n]: places after, so far */
-  const double *kick; /* [2n]: `half` of it is half a kick by the acceleration; NULL: none */
-  double half;
-  bool before; /* v is that of the middle of the step, and the half kick is still to come; else it's
-                * that of the end */
-  double *owed;
-  double apart, most; /* [px]: by which overlapping discs part; that a disc may be pushed */
+/* Longer ways than this, in diameters, have lists of their own. */
+static const double slow = 0.3;
+
+/* A drift, and where its pairs are listed. */
+typedef struct course {
+  msri_drift d;
   msri_near near;
-  bool fast;
-  uint64_t collisions;
-} motion;
+} course;
 
-static double mass(const msri_discs *d, size_t i) { return d->m[i * d->m_stride]; }
+/* ---- Ways */
 
-/* ---- One pair */
-
-static msri_disc_pair pair_of(const msri_discs *d, const double *q0, const double *q, double apart,
-                              size_t i, size_t j) {
-  const size_t n = d->n;
-  const msri_vec from = {q0[j] - q0[i], q0[n + j] - q0[n + i]};
-  const msri_vec way = {(q[j] - q0[j]) - (q[i] - q0[i]),
-                        (q[n + j] - q0[n + j]) - (q[n + i] - q0[n + i])};
-  return (msri_disc_pair){i, j, from, way, d->diameter, apart};
+/* A way that many go, to see them at rest: the mean of a few. */
+static msri_vec common_way(size_t n, const double *from, const double *to) {
+  enum { FEW = 64 };
+  const size_t every = n / FEW + 1, few = (n + every - 1) / every;
+  msri_vec sum = {0, 0};
+  for (size_t i = 0; i < n; i += every) sum.x += to[i] - from[i], sum.y += to[n + i] - from[n + i];
+  return (msri_vec){sum.x / (double)few, sum.y / (double)few};
 }
 
-static double kick_along(const motion *mo, size_t i, msri_vec n) {
-  if (!mo->kick) return 0;
-  return mo->half * (mo->kick[i] * n.x + mo->kick[mo->discs->n + i] * n.y);
-}
-
-/* The speed at which two leave that came at `speed`, both > 0. */
-static double rebound(const motion *mo, double speed, double kick_i, double kick_j) {
-  const double e = mo->discs->restitution, bounced = e * speed;
-  if (e == 1 || bounced > fabs(kick_i) + fabs(kick_j)) return bounced;
-  return msri_min(speed, msri_max(0, kick_i - kick_j));
-}
-
-/* Adds n s to a vector of mass i. */
-static void add(const motion *mo, double *of, size_t i, msri_vec n, double s) {
-  of[i] += n.x * s;
-  of[mo->discs->n + i] += n.y * s;
-}
-
-static void reflect(motion *mo, const msri_disc_pair *p, msri_vec n) {
-  const size_t i = p->i, j = p->j, count = mo->discs->n;
-  const double *vx = mo->v, *vy = mo->v + count;
-  const double kick_i = kick_along(mo, i, n), kick_j = kick_along(mo, j, n);
-  double speed = -((vx[j] - vx[i]) * n.x + (vy[j] - vy[i]) * n.y);
-  if (!mo->before) speed += kick_j - kick_i;
-  if (!(speed > 0)) return;
-  const double change = speed + rebound(mo, speed, kick_i, kick_j);
-  const double mi = mass(mo->discs, i), mj = mass(mo->discs, j);
-  add(mo, mo->v, i, n, -change * (mj / (mi + mj)));
-  add(mo, mo->v, j, n, change * (mi / (mi + mj)));
-  mo->collisions++;
-}
-
-/* The way along the normal becomes that of the centre of mass, but for the gap. */
-static void stop(const motion *mo, const msri_disc_pair *p, msri_vec n) {
-  const double lacks = msri_disc_pair_gap(p) - (p->way.x * n.x + p->way.y * n.y);
-  if (!(lacks > 0)) return;
-  const double mi = mass(mo->discs, p->i), mj = mass(mo->discs, p->j);
-  add(mo, mo->q, p->i, n, -lacks * (mj / (mi + mj)));
-  add(mo, mo->q, p->j, n, lacks * (mi / (mi + mj)));
-}
-
-/* Supports stop a mass that was pushed. */
-static void obstruct(motion *mo, size_t i) {
-  const size_t n = mo->discs->n;
-  const double half = mo->kick ? mo->half : 0, later = mo->before ? 0 : half;
-  double x[2], w[2], u[2], a[2], none[2];
-  if (!mo->supports->drift) return;
-  for (size_t d = 0; d < 2; d++) {
-    const size_t k = i + d * n;
-    const double kick = mo->kick ? mo->kick[k] : 0;
-    x[d] = mo->q0[k], u[d] = (mo->q[k] - x[d]) / mo->h;
-    w[d] = mo->v[k] - later * kick;
-    a[d] = 2 * half * kick / mo->h;
-  }
-  const uint64_t met = mo->supports->drift(mo->supports->self, 1, mo->h, u, a, x, w, none);
-  if (met == 0) return;
-  for (size_t d = 0; d < 2; d++) {
-    const size_t k = i + d * n;
-    mo->q[k] = x[d];
-    mo->v[k] = w[d] + (mo->kick ? later * mo->kick[k] : 0);
-  }
-  mo->collisions += met;
-}
-
-/* In a slow step nobody is pushed further than the list of neighbours is good for. */
-static void hold(const motion *mo, size_t i) {
-  const size_t n = mo->discs->n;
-  const double dx = mo->q[i] - mo->q0[i], dy = mo->q[n + i] - mo->q0[n + i];
-  const double way2 = dx * dx + dy * dy;
-  if (mo->fast || way2 <= mo->most * mo->most) return;
-  const double share = mo->most / sqrt(way2);
-  mo->q[i] = mo->q0[i] + share * dx;
-  mo->q[n + i] = mo->q0[n + i] + share * dy;
-}
-
-static bool collide(motion *mo, size_t i, size_t j) {
-  const msri_disc_pair p = pair_of(mo->discs, mo->q0, mo->q, mo->apart, i, j);
-  if (!msri_disc_pair_meets(&p)) return false;
-  const msri_vec n = msri_disc_pair_normal(&p, mo->discs->restitution);
-  const size_t both[] = {i, j};
-  stop(mo, &p, n);
-  reflect(mo, &p, n);
-  for (int k = 0; k < 2; k++) {
-    hold(mo, both[k]);
-    obstruct(mo, both[k]);
-    if (mo->owed) mo->owed[both[k]] = mo->owed[mo->discs->n + both[k]] = 0;
-  }
-  return true;
-}
-
-static bool retreat(motion *mo, size_t i, size_t j) {
-  const size_t both[] = {i, j}, n = mo->discs->n;
-  const msri_disc_pair p = pair_of(mo->discs, mo->q0, mo->q, 0, i, j);
-  if (!msri_disc_pair_meets(&p)) return false;
-  for (int k = 0; k < 2; k++) {
-    mo->q[both[k]] = mo->q0[both[k]];
-    mo->q[n + both[k]] = mo->q0[n + both[k]];
-  }
-  return true;
-}
-
-/* ---- All pairs */
-
-/* For fast steps, whose lists are of the pairs that meet. */
-typedef struct context {
-  const msri_discs *discs;
-  double apart;
-} context;
-
-static bool meet(const void *self, const msri_ways *ways, size_t i, size_t j) {
-  const context *c = self;
-  const msri_disc_pair p = pair_of(c->discs, ways->q0, ways->q, c->apart, i, j);
-  return msri_disc_pair_meets(&p);
-}
-
-static void list_fast(motion *mo, double apart) {
-  const context c = {mo->discs, apart};
-  if (mo->fast)
-    msri_near_list_ways(&mo->near, &(msri_ways){mo->q0, mo->q}, &(msri_meets){meet, &c});
-}
-
-/* Puts right, or back, each pair that meets. Were there any? */
-static bool pass(motion *mo, bool (*one)(motion *, size_t, size_t), double apart) {
-  bool any = false;
-  list_fast(mo, apart);
-  for (size_t k = 0; k < mo->near.list->n; k++)
-    any |= one(mo, mo->near.pair[k].i, mo->near.pair[k].j);
-  return any;
-}
-
-static void resolve(motion *mo) {
-  for (int p = 0; p < MOST_PASSES; p++)
-    if (!pass(mo, collide, mo->apart)) return;
-  for (int p = 0; p < MOST_RETREATS; p++)
-    if (!pass(mo, retreat, 0)) return;
-  memcpy(mo->q, mo->q0, 2 * mo->discs->n * sizeof *mo->q);
-}
-
-/* ---- Is there anything to do? */
-
-/* How many went further than `most` from where they were? What isn't finite did. */
-static size_t further(size_t n, const double *from, const double *to, double most) {
+/* How many went further than `most` from where they were, seen from what goes `way`? What isn't
+ * finite did. */
+static size_t further(size_t n, const double *from, const double *to, msri_vec way, double most) {
+  const double *x0 = from, *y0 = from + n, *x = to, *y = to + n, most2 = most * most;
   size_t count = 0;
   for (size_t i = 0; i < n; i++) {
-    const double dx = to[i] - from[i], dy = to[n + i] - from[n + i];
-    count += !(dx * dx + dy * dy <= most * most);
+    const double dx = x[i] - x0[i] - way.x, dy = y[i] - y0[i] - way.y;
+    count += !(dx * dx + dy * dy <= most2);
   }
   return count;
+}
+
+/* Has anyone moved against the others by more than `most` since the list was made? */
+static bool is_stale(const course *c, const double *q, double most) {
+  const double *at = c->near.at;
+  return !c->near.list->valid || !(most > 0) ||
+         further(c->d.n, at, q, common_way(c->d.n, at, q), most) > 0;
+}
+
+/* How far a list of slow ways is to reach: for some steps, and for nothing in a lattice at rest. */
+static double skin_for(const course *c, double way) {
+  return msri_max(1.25 * way, msri_min(0.45 * c->d.diameter,
+                                       msri_max(msri_near_skin * c->d.diameter, 8 * way)));
 }
 
 static double longest_way(size_t n, const double *from, const double *to) {
@@ -222,94 +83,165 @@ static double longest_way(size_t n, const double *from, const double *to) {
   return sqrt(most);
 }
 
-/* A list that is good for the free ways. */
-static void list_for_ways(motion *mo) {
-  const double reach = msri_near_skin * mo->discs->diameter;
-  if (!mo->near.list->valid || further(mo->discs->n, mo->near.at, mo->q, reach) > 0)
-    msri_near_list_at(&mo->near, mo->q0);
+/* ---- All pairs of a list */
+
+static bool for_each_pair(course *c, bool (*act)(msri_drift *, size_t, size_t)) {
+  bool any = false;
+  for (size_t k = 0; k < c->near.list->n; k++)
+    any |= act(&c->d, c->near.pair[k].i, c->near.pair[k].j);
+  return any;
 }
 
-/* A list that is good for all that may be pushed, too. */
-static void list_for_pushes(motion *mo) {
-  const double diameter = mo->discs->diameter;
-  mo->most = 1.5 * longest_way(mo->discs->n, mo->q0, mo->q) + 2 * mo->apart;
-  const double stale = msri_near_skin * diameter - mo->most;
-  if (further(mo->discs->n, mo->near.at, mo->q0, stale) > 0) msri_near_list_at(&mo->near, mo->q0);
+static bool meets(msri_drift *d, size_t i, size_t j) {
+  const msri_disc_pair p = msri_drift_pair(d, i, j, d->apart);
+  return msri_disc_pair_meets(&p);
 }
 
-static bool any_meets(const motion *mo) {
-  for (size_t k = 0; k < mo->near.list->n; k++) {
-    const msri_disc_pair p =
-        pair_of(mo->discs, mo->q0, mo->q, mo->apart, mo->near.pair[k].i, mo->near.pair[k].j);
-    if (msri_disc_pair_meets(&p)) return true;
-  }
+/* A few passes; was the last one idle? */
+static bool put_right(course *c) {
+  memset(c->d.pass, 0, c->d.n * sizeof *c->d.pass);
+  for (c->d.passes = 1; c->d.passes <= MOST_PASSES; c->d.passes++)
+    if (!for_each_pair(c, msri_drift_collide)) return true;
   return false;
 }
 
-/* Lists depend on the past, but what is in them is looked at again: what happens doesn't. */
-static uint64_t act(motion *mo) {
-  const msri_discs *d = mo->discs;
-  mo->apart = msri_min(parting_speed * fabs(mo->h), most_parting) * d->diameter;
-  mo->fast = further(d->n, mo->q0, mo->q, msri_near_slow * d->diameter) > 0;
-  if (!mo->fast) {
-    list_for_ways(mo);
-    if (!any_meets(mo)) return 0;
-    list_for_pushes(mo);
+/* Crowds grow by every pair that meets; if there is no end to it, all are one. */
+static void join(course *c) {
+  msri_drift_part(&c->d);
+  for (int joins = 0; joins < MOST_JOINS; joins++)
+    if (!for_each_pair(c, msri_drift_join)) return;
+  msri_drift_join_all(&c->d);
+}
+
+/* ---- Slow ways: one list, of all that may be pushed together */
+
+/* A list that is good for the free ways. */
+static void list_for_ways(course *c, double longest) {
+  if (is_stale(c, c->d.q, c->near.list->skin))
+    msri_near_list_at(&c->near, c->d.q0, skin_for(c, longest));
+}
+
+/* A list that is good for all that may be pushed, too; false: it's too long. */
+static bool list_for_pushes(course *c) {
+  if (!is_stale(c, c->d.q0, c->near.list->skin - c->d.most)) return true;
+  msri_near_list_at(&c->near, c->d.q0, skin_for(c, c->d.most));
+  if (c->near.list->full) msri_near_list_at(&c->near, c->d.q0, c->d.most);
+  return !c->near.list->full;
+}
+
+static bool collide_slowly(course *c) {
+  msri_drift *d = &c->d;
+  const double longest = longest_way(d->n, d->q0, d->q);
+  list_for_ways(c, longest);
+  if (!c->near.list->full && !for_each_pair(c, meets)) return true;
+  d->most = 1.5 * longest + 2 * d->apart;
+  if (!list_for_pushes(c)) return false;
+  if (!put_right(c)) join(c);
+  return true;
+}
+
+/* ---- Fast ways: lists of the pairs that meet, until there are none */
+
+static bool meet_on_ways(const void *self, const msri_ways *ways, size_t i, size_t j) {
+  const msri_drift *d = self;
+  const msri_disc_pair p = msri_drift_pair(d, i, j, d->apart);
+  (void)ways;
+  return msri_disc_pair_meets(&p);
+}
+
+static bool list_fast(course *c) {
+  const msri_ways ways = {c->d.q0, c->d.q};
+  msri_near_list_ways(&c->near, &ways, slow * c->d.diameter, &(msri_meets){meet_on_ways, &c->d});
+  return c->near.list->n > 0;
+}
+
+static void collide_fast(course *c) {
+  c->d.most = (double)INFINITY;
+  for (int lists = 0; lists < MOST_LISTS; lists++) {
+    if (!list_fast(c)) return;
+    put_right(c);
   }
-  resolve(mo);
-  return mo->collisions;
+  c->d.apart = 0;
+  msri_drift_part(&c->d);
+  for (int lists = 0; lists < MOST_LISTS; lists++) {
+    if (!list_fast(c)) return;
+    while (for_each_pair(c, msri_drift_join)) continue;
+  }
+  msri_drift_join_all(&c->d);
+}
+
+static uint64_t collide(course *c) {
+  msri_drift *d = &c->d;
+  d->apart = msri_min(parting_speed * fabs(d->h), most_parting) * d->diameter;
+  const bool fast = further(d->n, d->q0, d->q, (msri_vec){0, 0}, slow * d->diameter) > 0;
+  if (fast || !collide_slowly(c)) collide_fast(c);
+  return d->collisions;
+}
+
+/* ---- Memory of a state: a vector, the crowds, the list */
+
+static size_t rounded(size_t bytes) { return (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT; }
+
+static size_t vector_bytes(const msri_discs *d) { return rounded(2 * d->n * sizeof(double)); }
+
+static size_t crowd_bytes(const msri_discs *d) { return rounded(3 * d->n * sizeof(uint32_t)); }
+
+size_t msri_discs_room(const msri_discs *d) {
+  return vector_bytes(d) + crowd_bytes(d) + msri_near_bytes(d->n);
+}
+
+static course begin(const msri_discs *discs, const msri_contact *supports, void *room, double h) {
+  char *const crowds = (char *)room + vector_bytes(discs), *const near =
+                                                               crowds + crowd_bytes(discs);
+  return (course){.d = {.n = discs->n,
+                        .m = discs->m,
+                        .m_stride = discs->m_stride,
+                        .diameter = discs->diameter,
+                        .restitution = discs->restitution,
+                        .supports = supports,
+                        .h = h,
+                        .crowd = (void *)crowds,
+                        .next = (uint32_t *)(void *)crowds + discs->n,
+                        .pass = (uint32_t *)(void *)crowds + 2 * discs->n},
+                  .near = msri_near_place(discs->n, discs->diameter, &discs->ties, near)};
+}
+
+void msri_discs_forget(const msri_discs *discs, void *room) {
+  begin(discs, NULL, room, 0).near.list->valid = false;
 }
 
 /* ---- Drift and bounce */
 
-static size_t near_begins(const msri_discs *d) { return 2 * d->n * sizeof(double); }
-
-static msri_near near_in(const msri_discs *d, void *room) {
-  return msri_near_place(d->n, d->diameter, &d->ties,
-                         (char *)room + (near_begins(d) + 15) / 16 * 16);
-}
-
-void msri_discs_forget(const msri_discs *d, void *room) { near_in(d, room).list->valid = false; }
-
-uint64_t msri_discs_drift(const msri_discs *d, const msri_contact *supports, void *room, double h,
-                          const double *u, const double *a, double *q, double *v, double *owed) {
+uint64_t msri_discs_drift(const msri_discs *discs, const msri_contact *supports, void *room,
+                          double h, const double *u, const double *a, double *q, double *v,
+                          double *owed) {
   uint64_t met = 0;
+  course c = begin(discs, supports, room, h);
+  msri_drift *d = &c.d;
   memcpy(room, q, 2 * d->n * sizeof *q);
   if (supports->drift)
     met = supports->drift(supports->self, d->n, h, u, a, q, v, owed);
   else
     for (size_t i = 0; i < 2 * d->n; i++) q[i] += h * u[i];
-  motion mo = {.discs = d,
-               .supports = supports,
-               .h = h,
-               .q0 = room,
-               .q = q,
-               .v = v,
-               .kick = a,
-               .half = h / 2,
-               .before = true,
-               .owed = supports->drift ? owed : NULL,
-               .near = near_in(d, room)};
-  return met + act(&mo);
+  d->q0 = room, d->q = q, d->v = v;
+  d->kick = a, d->half = h / 2;
+  d->owed = supports->drift ? owed : NULL;
+  return met + collide(&c);
 }
 
-uint64_t msri_discs_bounce(const msri_discs *d, const msri_contact *supports, void *room, double h,
-                           const double *q0, const double *v0, double *q, double *v, double *owed) {
+uint64_t msri_discs_bounce(const msri_discs *discs, const msri_contact *supports, void *room,
+                           double h, const double *q0, const double *v0, double *q, double *v,
+                           double *owed) {
   uint64_t met = 0;
+  course c = begin(discs, supports, room, h);
+  msri_drift *d = &c.d;
   double *const kick = room;
   for (size_t i = 0; i < 2 * d->n; i++) kick[i] = v[i] - v0[i];
   if (supports->bounce) met = supports->bounce(supports->self, d->n, h, q0, v0, q, v, owed);
-  motion mo = {.discs = d,
-               .supports = supports,
-               .h = h,
-               .q0 = q0,
-               .q = q,
-               .v = v,
-               .kick = kick,
-               .half = 0.5,
-               .owed = supports->bounce ? owed : NULL,
-               .near = near_in(d, room)};
-  return met + act(&mo);
+  d->q0 = q0, d->q = q, d->v = v;
+  d->kick = kick, d->half = d->behind = 0.5;
+  d->owed = supports->bounce ? owed : NULL;
+  return met + collide(&c);
 }
 
 /* ---- Creation */
@@ -319,12 +251,8 @@ size_t msri_discs_bytes(const msri_discs *d) {
          d->ties.first[d->n] * sizeof *d->ties.partner;
 }
 
-size_t msri_discs_room(const msri_discs *d) {
-  return (near_begins(d) + 15) / 16 * 16 + msri_near_bytes(d->n);
-}
-
 static bool all_tied(size_t n, const msri_ties *ties) {
-  return ties->first[n] == n / 2 * (n % 2 ? n : n - 1);
+  return ties->first[n] == (n % 2 ? (n - 1) / 2 * n : n / 2 * (n - 1));
 }
 
 msr_status msri_discs_create(const msr_view *start, double diameter, double restitution,

@@ -68,8 +68,9 @@ typedef struct cell {
 static const double farthest = 0x1p50;
 
 static int64_t cell_of(double at, double size) {
-  const double c = floor(at / size);
-  return c > -farthest ? c < farthest ? (int64_t)c : (int64_t)farthest : -(int64_t)farthest;
+  const double c = at / size;
+  const int64_t whole = (int64_t)(c > -farthest ? c < farthest ? c : farthest : -farthest);
+  return whole - (c < (double)whole);
 }
 
 static cell cell_at(const double *q, size_t n, size_t i, double size) {
@@ -102,7 +103,9 @@ static void sort(msri_near *near, const double *q, double size, const uint32_t *
 
 static void append(msri_near *near, size_t a, size_t b) {
   const size_t i = a < b ? a : b, j = a < b ? b : a;
-  if (near->list->n == near->capacity || msri_ties_tied(near->ties, i, j)) return;
+  if (msri_ties_tied(near->ties, i, j)) return;
+  near->list->full |= near->list->n == near->capacity;
+  if (near->list->full) return;
   near->pair[near->list->n++] = (msri_pair){(uint32_t)i, (uint32_t)j};
 }
 
@@ -132,36 +135,62 @@ static bool wanted(const search *s, size_t i, size_t j) {
   return !s->meets || s->meets->meet(s->meets->self, s->ways, i, j);
 }
 
-/* Appends the pairs of mass i with those of a higher number around it. */
-static void look_around(msri_near *near, const search *s, size_t i) {
-  const size_t n = near->n;
-  const double *x = s->q0, *y = x + n, reach2 = s->reach * s->reach;
-  const cell at = cell_at(s->q0, n, i, s->size);
-  for (int64_t cy = at.y - 1; cy <= at.y + 1; cy++)
-    for (int64_t cx = at.x - 1; cx <= at.x + 1; cx++) {
-      const size_t b = bucket_of(near, (cell){cx, cy});
-      for (uint32_t k = near->bucket[b]; k < near->bucket[b + 1]; k++) {
-        const size_t j = near->sorted[k];
-        if (j <= i || !(squared(x[j] - x[i], y[j] - y[i]) <= reach2)) continue;
-        const cell other = cell_at(s->q0, n, j, s->size); // not of a cell in the same bucket?
-        if (other.x == cx && other.y == cy && wanted(s, i, j)) append(near, i, j);
-      }
-    }
+/* Three cells side by side: buckets b, b + 1 and b + 2, which may go round. */
+typedef struct three {
+  uint32_t begin, end, begin_again, end_again;
+} three;
+
+static three three_from(const msri_near *near, cell first) {
+  const size_t b = bucket_of(near, first), last = near->buckets,
+               over = b + 3 > last ? b + 3 - last : 0;
+  return (three){near->bucket[b], near->bucket[b + 3 - over], near->bucket[0], near->bucket[over]};
 }
 
-void msri_near_list_at(msri_near *near, const double *q) {
-  const double reach = near->diameter * (1 + 2 * msri_near_skin);
+/* Is j of a cell in the three, and not only of the same bucket? */
+static bool is_of(const msri_near *near, const search *s, size_t j, cell first) {
+  const cell c = cell_at(s->q0, near->n, j, s->size);
+  return c.y == first.y && c.x >= first.x && c.x <= first.x + 2;
+}
+
+static void look_among(msri_near *near, const search *s, size_t i, cell first, uint32_t begin,
+                       uint32_t end) {
+  const double *x = s->q0, *y = x + near->n, reach2 = s->reach * s->reach;
+  for (uint32_t k = begin; k < end; k++) {
+    const size_t j = near->sorted[k];
+    if (j > i && squared(x[j] - x[i], y[j] - y[i]) <= reach2 && is_of(near, s, j, first) &&
+        wanted(s, i, j))
+      append(near, i, j);
+  }
+}
+
+/* Appends the pairs of mass i with those of a higher number around it. */
+static void look_around(msri_near *near, const search *s, size_t i) {
+  const cell at = cell_at(s->q0, near->n, i, s->size);
+  for (int64_t cy = at.y - 1; cy <= at.y + 1; cy++) {
+    const cell first = {at.x - 1, cy};
+    const three t = three_from(near, first);
+    look_among(near, s, i, first, t.begin, t.end);
+    look_among(near, s, i, first, t.begin_again, t.end_again);
+  }
+}
+
+static void begin_list(msri_near *near, double skin) {
+  *near->list = (msri_near_list){.skin = skin};
+}
+
+void msri_near_list_at(msri_near *near, const double *q, double skin) {
+  const double reach = near->diameter + 2 * skin;
   const search s = {.q0 = q, .size = reach, .reach = reach};
+  begin_list(near, skin);
   for (size_t i = 0; i < near->n; i++) near->set[i] = (uint32_t)i;
   sort(near, q, s.size, near->set, near->n);
-  near->list->n = 0;
   for (size_t i = 0; i < near->n; i++) {
     const size_t begin = near->list->n;
     look_around(near, &s, i);
     order_few(near->pair, begin, near->list->n);
   }
   memcpy(near->at, q, 2 * near->n * sizeof *q);
-  near->list->valid = near->list->n < near->capacity; // else it holds for these places only
+  near->list->valid = !near->list->full;
 }
 
 /* ---- Fast ways */
@@ -238,19 +267,23 @@ static void meet_on_way(msri_near *near, const search *s, const walk *w, size_t 
   if (i < j ? wanted(s, i, j) : wanted(s, j, i)) append(near, i, j);
 }
 
+static void meet_among(msri_near *near, const search *s, const walk *w, double step, cell first,
+                       uint32_t begin, uint32_t end) {
+  for (uint32_t k = begin; k < end; k++)
+    if (is_of(near, s, near->sorted[k], first)) meet_on_way(near, s, w, near->sorted[k], step);
+}
+
 /* The nine cells around a step of the walk. */
 static void look_from(msri_near *near, const search *s, const walk *w, double step) {
   const double t = w->steps > 0 ? w->begin + (w->end - w->begin) * (step / w->steps) : w->begin;
   const double at[] = {w->p[0] + t * w->u[0], w->p[1] + t * w->u[1]};
   const cell c = cell_at(at, 1, 0, s->size);
-  for (int64_t cy = c.y - 1; cy <= c.y + 1; cy++)
-    for (int64_t cx = c.x - 1; cx <= c.x + 1; cx++) {
-      const size_t b = bucket_of(near, (cell){cx, cy});
-      for (uint32_t k = near->bucket[b]; k < near->bucket[b + 1]; k++) {
-        const cell other = cell_at(s->q0, near->n, near->sorted[k], s->size);
-        if (other.x == cx && other.y == cy) meet_on_way(near, s, w, near->sorted[k], step);
-      }
-    }
+  for (int64_t cy = c.y - 1; cy <= c.y + 1; cy++) {
+    const cell first = {c.x - 1, cy};
+    const three t3 = three_from(near, first);
+    meet_among(near, s, w, step, first, t3.begin, t3.end);
+    meet_among(near, s, w, step, first, t3.begin_again, t3.end_again);
+  }
 }
 
 /* Appends the pairs of a mass that passes through a frame; where its way has more cells than the
@@ -309,15 +342,15 @@ static bool is_finite(const msri_ways *w, size_t n, size_t i) {
   return isfinite(w->q[i] - w->q0[i]) && isfinite(w->q[n + i] - w->q0[n + i]);
 }
 
-void msri_near_list_ways(msri_near *near, const msri_ways *ways, const msri_meets *meets) {
+void msri_near_list_ways(msri_near *near, const msri_ways *ways, double slow,
+                         const msri_meets *meets) {
   const size_t n = near->n;
   uint32_t *set = near->set;
   size_t members = 0;
   for (size_t i = 0; i < n; i++)
     if (is_finite(ways, n, i)) set[members++] = (uint32_t)i;
-  near->list->n = 0;
-  near->list->valid = false;
-  frame f = {.radius = msri_near_slow * near->diameter};
+  begin_list(near, 0);
+  frame f = {.radius = slow};
   while (members > 0) {
     const size_t rest = look_in(near, &f, ways, meets, set, members);
     set += rest, members -= rest;

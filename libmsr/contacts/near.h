@@ -16,7 +16,9 @@ typedef struct msri_pair {
  * when they were listed. */
 typedef struct msri_near_list {
   bool valid;
+  bool full; /* there are more pairs than there is room for */
   size_t n;
+  double skin; /* pairs closer than the diameter and twice this are listed [px] */
 } msri_near_list;
 
 typedef struct msri_near {
@@ -39,23 +41,25 @@ typedef struct msri_ways {
   const double *q0, *q;
 } msri_ways;
 
-/* The list is of pairs closer than 1 + 2 `msri_near_skin` diameters: less than a square's diagonal,
- * so that a lattice at rest has none. A mass that moves further in a step than `msri_near_slow` is
- * searched for along its way. In diameters. */
-static const double msri_near_skin = 0.2, msri_near_slow = 0.1;
+/* Half of what is left of a square's diagonal, in diameters: with less skin than this a lattice at
+ * rest has no pairs. */
+static const double msri_near_skin = 0.2;
 
 /* Bytes for so many masses; and the parts of such a block, aligned as malloc's, zeroed at first. */
 size_t msri_near_bytes(size_t n);
 msri_near msri_near_place(size_t n, double diameter, const msri_ties *ties, void *block);
 
-/* Lists all pairs within reach, masses being at q [2n]. */
-void msri_near_list_at(msri_near *near, const double *q);
+/* Lists all pairs within reach, masses being at q [2n]: none is missing for straight ways that
+ * begin and end within the skin of q. */
+void msri_near_list_at(msri_near *near, const double *q, double skin);
 
-/* Makes a list, which won't last, of those pairs on fast ways that `meet`. */
+/* Makes a list, which won't last, of those pairs that `meet`, on ways of any length: those shorter
+ * than `slow` are found as pairs that rest. */
 typedef struct msri_meets {
   bool (*meet)(const void *self, const msri_ways *ways, size_t i, size_t j);
   const void *self;
 } msri_meets;
-void msri_near_list_ways(msri_near *near, const msri_ways *ways, const msri_meets *meets);
+void msri_near_list_ways(msri_near *near, const msri_ways *ways, double slow,
+                         const msri_meets *meets);
 
 #endif
