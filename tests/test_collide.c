@@ -190,7 +190,7 @@ static void clouds_keep_momentum_and_gain_nothing(void **unused) {
                      least_gap(&s, 1), step);
           kinetic = now.kinetic;
         }
-        assert_true(msr_state_contacts(w.state) > 0);
+        assert_true(msr_state_contacts(w.state) > 0 || speeds[v] < 1);
         close_world(w);
       }
 }
@@ -482,7 +482,7 @@ static void moved_discs_are_found(void **unused) {
   s.x[0] = 18.99, s.vx[0] = 5;
   advance(&w, 2);
   const msr_view now = msr_state_view(w.state);
-  assert_true(now.vx[0] == 0 && now.vx[1] == 5);
+  assert_true(fabs(now.vx[0]) <= 1e-12 && fabs(now.vx[1] - 5) <= 1e-12);
   close_world(w);
 }
 
@@ -548,6 +548,7 @@ static void the_search_finds_every_pair(void **unused) {
     const size_t n = 2 + random_below(&dice, 70);
     const msr_run_of_springs run = {0, n - 1, 1, &k1, &k1, 0};
     finder f = finder_of(n, &(msr_springs){.n = n - 1, .n_runs = 1, .run = &run});
+    f.near.ties = &f.ties;
     const double side = uniform(&dice, 1, 40), speed = pow(10, uniform(&dice, -2, 6));
     const double common = random_below(&dice, 2) ? speed * 30 : 0;
     for (size_t i = 0; i < 2 * n; i++) {
@@ -570,6 +571,7 @@ static void a_body_has_few_pairs(void **unused) {
   (void)unused;
   const size_t side = 316, n = side * side;
   finder f = finder_of(n, &(msr_springs){0});
+  f.near.ties = &f.ties;
   for (size_t i = 0; i < n; i++) {
     f.q0[i] = (double)(i % side), f.q0[n + i] = (double)(i / side);
     f.q[i] = f.q0[i] + 1e5, f.q[n + i] = f.q0[n + i] - 3e4;

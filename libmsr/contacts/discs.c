@@ -93,7 +93,7 @@ static bool for_each_pair(course *c, bool (*act)(msri_drift *, size_t, size_t)) 
 }
 
 static bool meets(msri_drift *d, size_t i, size_t j) {
-  const msri_disc_pair p = msri_drift_pair(d, i, j, d->apart);
+  const msri_disc_pair p = msri_drift_pair(d, i, j);
   return msri_disc_pair_meets(&p);
 }
 
@@ -103,14 +103,6 @@ static bool put_right(course *c) {
   for (c->d.passes = 1; c->d.passes <= MOST_PASSES; c->d.passes++)
     if (!for_each_pair(c, msri_drift_collide)) return true;
   return false;
-}
-
-/* Crowds grow by every pair that meets; if there is no end to it, all are one. */
-static void join(course *c) {
-  msri_drift_part(&c->d);
-  for (int joins = 0; joins < MOST_JOINS; joins++)
-    if (!for_each_pair(c, msri_drift_join)) return;
-  msri_drift_join_all(&c->d);
 }
 
 /* ---- Slow ways: one list, of all that may be pushed together */
@@ -129,14 +121,21 @@ static bool list_for_pushes(course *c) {
   return !c->near.list->full;
 }
 
-static bool collide_slowly(course *c) {
-  msri_drift *d = &c->d;
-  const double longest = longest_way(d->n, d->q0, d->q);
-  list_for_ways(c, longest);
-  if (!c->near.list->full && !for_each_pair(c, meets)) return true;
-  d->most = 1.5 * longest + 2 * d->apart;
+/* Crowds grow by every pair that meets; if there is no end to it, all are one. */
+static void join(course *c) {
+  msri_drift_part(&c->d);
+  for (int joins = 0; joins < MOST_JOINS; joins++)
+    if (!for_each_pair(c, msri_drift_join)) return;
+  msri_drift_join_all(&c->d);
+}
+
+/* False: there are too many pairs. */
+static bool resolve_slowly(course *c) {
+  if (!for_each_pair(c, meets)) return true;
   if (!list_for_pushes(c)) return false;
-  if (!put_right(c)) join(c);
+  if (put_right(c)) return true;
+  c->d.apart = 0;
+  join(c);
   return true;
 }
 
@@ -144,7 +143,7 @@ static bool collide_slowly(course *c) {
 
 static bool meet_on_ways(const void *self, const msri_ways *ways, size_t i, size_t j) {
   const msri_drift *d = self;
-  const msri_disc_pair p = msri_drift_pair(d, i, j, d->apart);
+  const msri_disc_pair p = msri_drift_pair(d, i, j);
   (void)ways;
   return msri_disc_pair_meets(&p);
 }
@@ -155,13 +154,7 @@ static bool list_fast(course *c) {
   return c->near.list->n > 0;
 }
 
-static void collide_fast(course *c) {
-  c->d.most = (double)INFINITY;
-  for (int lists = 0; lists < MOST_LISTS; lists++) {
-    if (!list_fast(c)) return;
-    put_right(c);
-  }
-  c->d.apart = 0;
+static void join_fast(course *c) {
   msri_drift_part(&c->d);
   for (int lists = 0; lists < MOST_LISTS; lists++) {
     if (!list_fast(c)) return;
@@ -170,11 +163,34 @@ static void collide_fast(course *c) {
   msri_drift_join_all(&c->d);
 }
 
+static void resolve_fast(course *c) {
+  c->d.most = (double)INFINITY;
+  for (int lists = 0; lists < MOST_LISTS; lists++) {
+    if (!list_fast(c)) return;
+    put_right(c);
+  }
+  c->d.apart = 0;
+  join_fast(c);
+}
+
+/* ---- A drift */
+
+/* Collisions, then the parting of discs that overlap. */
 static uint64_t collide(course *c) {
   msri_drift *d = &c->d;
-  d->apart = msri_min(parting_speed * fabs(d->h), most_parting) * d->diameter;
-  const bool fast = further(d->n, d->q0, d->q, (msri_vec){0, 0}, slow * d->diameter) > 0;
-  if (fast || !collide_slowly(c)) collide_fast(c);
+  const double apart = msri_min(parting_speed * fabs(d->h), most_parting) * d->diameter;
+  const double longest = longest_way(d->n, d->q0, d->q);
+  bool fast = !(longest <= slow * d->diameter);
+  d->most = 1.5 * longest + 2 * apart;
+  if (!fast) list_for_ways(c, longest);
+  fast |= c->near.list->full;
+  for (int parts = 0; parts < 2; parts++) {
+    d->parts = parts;
+    d->apart = apart;
+    d->joined = false;
+    if (fast || !resolve_slowly(c)) resolve_fast(c);
+    if (d->joined && !parts) msri_drift_turn(d);
+  }
   return d->collisions;
 }
 

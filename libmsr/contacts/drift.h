@@ -23,6 +23,9 @@ typedef struct msri_drift {
   uint32_t *crowd, *next; /* [n]: the crowd that a mass is of, and the next mass of it */
   uint32_t *pass;         /* [n]: the last pass in which it was pushed */
   uint32_t passes;        /* the one under way */
+  bool joined;            /* there may be crowds */
+  bool parts;             /* it only moves apart discs that overlap: velocities are left alone */
+  double lost;            /* kinetic energy, in collisions of this drift */
   uint64_t collisions;
 } msri_drift;
 
@@ -30,13 +33,12 @@ static inline double msri_drift_mass(const msri_drift *d, size_t i) {
   return d->m[i * d->m_stride];
 }
 
-/* The pair as it goes so far; discs that overlap are to part by `apart`. */
-static inline msri_disc_pair msri_drift_pair(const msri_drift *d, size_t i, size_t j,
-                                             double apart) {
+/* The pair as it goes so far. */
+static inline msri_disc_pair msri_drift_pair(const msri_drift *d, size_t i, size_t j) {
   const double *x0 = d->q0, *y0 = x0 + d->n, *x = d->q, *y = x + d->n;
   const msri_vec from = {x0[j] - x0[i], y0[j] - y0[i]};
   const msri_vec way = {(x[j] - x0[j]) - (x[i] - x0[i]), (y[j] - y0[j]) - (y[i] - y0[i])};
-  return (msri_disc_pair){i, j, from, way, d->diameter, apart};
+  return (msri_disc_pair){i, j, from, way, d->diameter, d->parts ? d->apart : 0};
 }
 
 /* If the pair meets, puts it right. Returns whether it met. */
@@ -50,5 +52,8 @@ bool msri_drift_join(msri_drift *d, size_t i, size_t j);
 
 /* Makes one crowd of all. */
 void msri_drift_join_all(msri_drift *d);
+
+/* Turns round the velocities within every crowd. */
+void msri_drift_turn(msri_drift *d);
 
 #endif
