@@ -129,7 +129,7 @@ static void the_cradle_hands_on(void **unused) {
   (void)unused;
   for (int left = 0; left < 2; left++) {
     msr_scene *scene = discs(0.01, 1, 1);
-    for (int i = 0; i < 5; i++) add_mass(scene, i, 0, 0, 0, 2);
+    for (int i = 0; i < 5; i++) add_mass(scene, 1.05 * i, 0, 0, 0, 2);
     add_mass(scene, left ? -2 : 6, 0, left ? 4 : -4, 0, 2);
     const world w = open_world(scene, NULL, 1);
     advance(&w, 100);

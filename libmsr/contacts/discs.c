@@ -187,9 +187,7 @@ static uint64_t collide(course *c) {
   for (int parts = 0; parts < 2; parts++) {
     d->parts = parts;
     d->apart = apart;
-    d->joined = false;
     if (fast || !resolve_slowly(c)) resolve_fast(c);
-    if (d->joined && !parts) msri_drift_turn(d);
   }
   return d->collisions;
 }

@@ -14,11 +14,46 @@
 
 #include <math.h>
 
+/* ---- Energy */
+
+/* What a change of ways by D does to the kinetic energy if velocities change by f D: the sum of
+ * f m v.D + f^2 m D.D / 2. */
+typedef struct work {
+  double linear, square;
+} work;
+
+static void do_work(work *w, double m, msri_vec v, msri_vec change) {
+  w->linear += m * (v.x * change.x + v.y * change.y);
+  w->square += m * (change.x * change.x + change.y * change.y);
+}
+
+/* The factor f, or, if that would take more energy than collisions have lost, one that doesn't. */
+static double allowed(msri_drift *d, const work *w, double f) {
+  if (d->parts) return 0;
+  if (f * (w->linear + f * w->square / 2) > d->lost) {
+    const double root = sqrt(w->linear * w->linear + 2 * w->square * d->lost);
+    f = w->square > 0 ? msri_max(0, root - w->linear) / w->square : 0;
+  }
+  d->lost = msri_max(0, d->lost - f * (w->linear + f * w->square / 2));
+  return f;
+}
+
 /* ---- One mass */
 
-/* Changes its way, and its velocity. */
-static void move(const msri_drift *d, size_t i, double x, double y) {
-  d->q[i] += x, d->q[d->n + i] += y;
+/* Its velocity in the middle of the step. */
+static msri_vec velocity(const msri_drift *d, size_t i) {
+  const double *vx = d->v, *vy = vx + d->n, *kx = d->kick, *ky = kx ? kx + d->n : NULL;
+  if (!kx) return (msri_vec){vx[i], vy[i]};
+  return (msri_vec){vx[i] - d->behind * kx[i], vy[i] - d->behind * ky[i]};
+}
+
+static msri_vec way_of(const msri_drift *d, size_t i) {
+  return (msri_vec){d->q[i] - d->q0[i], d->q[d->n + i] - d->q0[d->n + i]};
+}
+
+/* It goes `way` now. */
+static void redirect(const msri_drift *d, size_t i, msri_vec way) {
+  d->q[i] = d->q0[i] + way.x, d->q[d->n + i] = d->q0[d->n + i] + way.y;
   d->pass[i] = d->passes;
 }
 
@@ -28,82 +63,61 @@ static void speed_up(const msri_drift *d, size_t i, double x, double y) {
 }
 
 /* Supports stop a mass that was pushed. */
-static void obstruct(const msri_drift *d, size_t i) {
+static void obstruct(msri_drift *d, size_t i) {
   const size_t n = d->n;
   const double from[] = {d->q0[i], d->q0[n + i]};
   double to[] = {d->q[i], d->q[n + i]};
+  work w = {0};
   if (!d->supports->stop || !d->supports->stop(d->supports->self, from, to)) return;
-  for (size_t k = 0; k < 2; k++) {
-    const size_t c = i + k * n;
-    const double speed = d->v[c] - (d->kick ? d->behind * d->kick[c] : 0);
-    if (!d->parts && (to[k] - d->q[c]) * speed < 0) d->v[c] -= (1 + d->restitution) * speed;
-    d->q[c] = to[k];
-  }
+  const msri_vec change = {to[0] - d->q[i], to[1] - d->q[n + i]};
+  do_work(&w, msri_drift_mass(d, i), velocity(d, i), change);
+  const double f = allowed(d, &w, (1 + d->restitution) / d->h);
+  speed_up(d, i, f * change.x, f * change.y);
+  d->q[i] = to[0], d->q[n + i] = to[1];
   d->pass[i] = d->passes;
-}
-
-static double way2(const msri_drift *d, size_t i, double x, double y) {
-  const double dx = d->q[i] + x - d->q0[i], dy = d->q[d->n + i] + y - d->q0[d->n + i];
-  return dx * dx + dy * dy;
 }
 
 /* ---- A pair */
 
 static double kick_along(const msri_drift *d, size_t i, msri_vec n) {
-  return d->kick ? d->kick[i] * n.x + d->kick[d->n + i] * n.y : 0;
+  return d->kick ? d->half * (d->kick[i] * n.x + d->kick[d->n + i] * n.y) : 0;
 }
 
-/* The speed at which the two come together in the middle of the step. */
-static double approach(const msri_drift *d, const msri_disc_pair *p, msri_vec n) {
-  const double *vx = d->v, *vy = vx + d->n;
-  const double now = (vx[p->i] - vx[p->j]) * n.x + (vy[p->i] - vy[p->j]) * n.y;
-  return now - d->behind * (kick_along(d, p->i, n) - kick_along(d, p->j, n));
-}
-
-/* The restitution of two that meet along n. They rest on each other if, with what e leaves them of
- * their speed, half a kick brings them back: then they leave with what that takes away. */
+/* The restitution of two that meet along n at a speed. They rest on each other if, with what e
+ * leaves them of it, half a kick brings them back: then they leave with what that takes away. */
 static double restitution_of(const msri_drift *d, const msri_disc_pair *p, msri_vec n,
                              double speed) {
   const double e = d->restitution;
   if (e == 1 || !(speed > 0)) return e;
-  const double ki = d->half * kick_along(d, p->i, n), kj = d->half * kick_along(d, p->j, n);
+  const double ki = kick_along(d, p->i, n), kj = kick_along(d, p->j, n);
   if (e * speed > fabs(ki) + fabs(kj)) return e;
   return msri_min(1, msri_max(0, ki - kj) / speed);
 }
 
-/* The share of a push by which neither goes further than it may. */
-static double share_of(const msri_drift *d, const msri_disc_pair *p, msri_vec n, double si,
-                       double sj) {
-  const double most2 = d->most * d->most;
-  for (double share = 1; share > 0x1p-10; share /= 2)
-    if (way2(d, p->i, share * si * n.x, share * si * n.y) <= most2 &&
-        way2(d, p->j, share * sj * n.x, share * sj * n.y) <= most2)
-      return share;
-  return 0;
+/* Would it go further than it may? */
+static bool is_too_far(const msri_drift *d, size_t i, msri_vec n, double s) {
+  const msri_vec way = way_of(d, i);
+  const double x = way.x + s * n.x, y = way.y + s * n.y;
+  return x * x + y * y > d->most * d->most;
 }
 
-/* Pushes the two apart by `s` along n, their centre of mass staying where it is, and changes by
- * `change` the speed at which they part. */
-static void push_apart(const msri_drift *d, const msri_disc_pair *p, msri_vec n, double s,
-                       double change) {
-  const double mi = msri_drift_mass(d, p->i), mj = msri_drift_mass(d, p->j);
+/* Pushes two apart by s along n, their centre of mass staying where it is; by less if one would go
+ * too far. */
+static void push_apart(msri_drift *d, const msri_disc_pair *p, msri_vec n, double s) {
+  const size_t i = p->i, j = p->j;
+  const double mi = msri_drift_mass(d, i), mj = msri_drift_mass(d, j);
   const double of_i = -(mj / (mi + mj)), of_j = mi / (mi + mj);
-  const double way = s * share_of(d, p, n, s * of_i, s * of_j);
-  move(d, p->i, way * of_i * n.x, way * of_i * n.y);
-  move(d, p->j, way * of_j * n.x, way * of_j * n.y);
-  speed_up(d, p->i, change * of_i * n.x, change * of_i * n.y);
-  speed_up(d, p->j, change * of_j * n.x, change * of_j * n.y);
-}
-
-/* The change of speed that goes with a push by `s`, no more than the energy lost so far allows. */
-static double change_for(msri_drift *d, const msri_disc_pair *p, msri_vec n, double s) {
-  const double mi = msri_drift_mass(d, p->i), mj = msri_drift_mass(d, p->j);
-  const double half = mi / (mi + mj) * mj / 2, speed = approach(d, p, n);
-  const double most = sqrt(speed * speed + d->lost / half);
-  const double after = msri_min(most, (1 + restitution_of(d, p, n, speed)) * s / d->h - speed);
-  d->lost = msri_max(0, d->lost + half * (speed * speed - after * after));
-  d->collisions += speed > 0;
-  return speed + after;
+  while (is_too_far(d, i, n, s * of_i) || is_too_far(d, j, n, s * of_j)) s = s > 1e-12 ? s / 2 : 0;
+  const msri_vec vi = velocity(d, i), vj = velocity(d, j);
+  const double speed = (vi.x - vj.x) * n.x + (vi.y - vj.y) * n.y, m = mj * of_j;
+  const work w = {-m * speed * s, m * s * s};
+  const double f = s * allowed(d, &w, (1 + restitution_of(d, p, n, speed)) / d->h);
+  const msri_vec di = way_of(d, i), dj = way_of(d, j);
+  redirect(d, i, (msri_vec){di.x + s * of_i * n.x, di.y + s * of_i * n.y});
+  redirect(d, j, (msri_vec){dj.x + s * of_j * n.x, dj.y + s * of_j * n.y});
+  speed_up(d, i, f * of_i * n.x, f * of_i * n.y);
+  speed_up(d, j, f * of_j * n.x, f * of_j * n.y);
+  d->collisions += speed > 0 && !d->parts;
 }
 
 bool msri_drift_collide(msri_drift *d, size_t i, size_t j) {
@@ -113,7 +127,7 @@ bool msri_drift_collide(msri_drift *d, size_t i, size_t j) {
   const msri_vec n = msri_disc_pair_normal(&p, d->restitution);
   const double s = msri_disc_pair_gap(&p) - (p.way.x * n.x + p.way.y * n.y);
   if (!(s > 0)) return false;
-  push_apart(d, &p, n, s, d->parts ? 0 : change_for(d, &p, n, s));
+  push_apart(d, &p, n, s);
   obstruct(d, i);
   obstruct(d, j);
   return true;
@@ -123,29 +137,33 @@ bool msri_drift_collide(msri_drift *d, size_t i, size_t j) {
 
 void msri_drift_part(msri_drift *d) {
   for (size_t i = 0; i < d->n; i++) d->crowd[i] = d->next[i] = (uint32_t)i;
-  d->joined = true;
 }
 
-/* The mean of a vector [2n] and another times `factor` over a crowd, by mass. */
-static msri_vec mean_of(const msri_drift *d, size_t first, const double *of, const double *other,
-                        double factor) {
-  const size_t n = d->n;
-  double x = 0, y = 0, sum = 0;
+/* The way of its centre of mass. */
+static msri_vec common_way(const msri_drift *d, size_t first) {
+  msri_vec sum = {0, 0};
+  double mass = 0;
   size_t i = first;
   do {
     const double m = msri_drift_mass(d, i);
-    x += m * (of[i] + (other ? factor * other[i] : 0));
-    y += m * (of[n + i] + (other ? factor * other[n + i] : 0));
-    sum += m;
+    const msri_vec way = way_of(d, i);
+    sum.x += m * way.x, sum.y += m * way.y, mass += m;
   } while ((i = d->next[i]) != first);
-  return (msri_vec){x / sum, y / sum};
+  return (msri_vec){sum.x / mass, sum.y / mass};
 }
 
-static void go_together(const msri_drift *d, size_t first, msri_vec way) {
+static void go_together(msri_drift *d, size_t first, msri_vec way) {
+  work w = {0};
   size_t i = first;
   do {
-    d->q[i] = d->q0[i] + way.x;
-    d->q[d->n + i] = d->q0[d->n + i] + way.y;
+    const msri_vec old = way_of(d, i);
+    do_work(&w, msri_drift_mass(d, i), velocity(d, i), (msri_vec){way.x - old.x, way.y - old.y});
+  } while ((i = d->next[i]) != first);
+  const double f = allowed(d, &w, (1 + d->restitution) / d->h);
+  do {
+    const msri_vec old = way_of(d, i);
+    speed_up(d, i, f * (way.x - old.x), f * (way.y - old.y));
+    redirect(d, i, way);
   } while ((i = d->next[i]) != first);
 }
 
@@ -171,35 +189,13 @@ bool msri_drift_join(msri_drift *d, size_t i, size_t j) {
   if (d->crowd[i] == d->crowd[j] || !msri_disc_pair_meets(&p)) return false;
   for (size_t k = j; d->crowd[k] != d->crowd[i]; k = d->next[k]) d->crowd[k] = d->crowd[i];
   swap_next(d, i, j);
-  go_together(d, i, mean_of(d, i, d->q, d->q0, -1));
+  go_together(d, i, common_way(d, i));
   if (is_stopped(d, i)) go_together(d, i, (msri_vec){0, 0});
   return true;
 }
 
 void msri_drift_join_all(msri_drift *d) {
   for (size_t i = 0; i < d->n; i++) d->crowd[i] = 0, d->next[i] = (uint32_t)((i + 1) % d->n);
-  go_together(d, 0, mean_of(d, 0, d->q, d->q0, -1));
+  go_together(d, 0, common_way(d, 0));
   if (is_stopped(d, 0)) go_together(d, 0, (msri_vec){0, 0});
-}
-
-/* Reflects the velocities of a crowd in the middle of the step against that of its centre of mass;
- * or, if it went nowhere as supports stopped it, against these. */
-static void turn(msri_drift *d, size_t first) {
-  const size_t n = d->n;
-  const bool stays =
-      d->supports->stop && d->q[first] == d->q0[first] && d->q[n + first] == d->q0[n + first];
-  const msri_vec mean = stays ? (msri_vec){0, 0} : mean_of(d, first, d->v, d->kick, -d->behind);
-  size_t i = first;
-  do {
-    const double kx = d->kick ? d->behind * d->kick[i] : 0,
-                 ky = d->kick ? d->behind * d->kick[n + i] : 0;
-    const double change = 1 + d->restitution;
-    speed_up(d, i, change * (mean.x - (d->v[i] - kx)), change * (mean.y - (d->v[n + i] - ky)));
-  } while ((i = d->next[i]) != first);
-  d->collisions++;
-}
-
-void msri_drift_turn(msri_drift *d) {
-  for (size_t i = 0; i < d->n; i++)
-    if (d->next[i] != i && d->crowd[i] == i) turn(d, i);
 }

@@ -23,7 +23,6 @@ typedef struct msri_drift {
   uint32_t *crowd, *next; /* [n]: the crowd that a mass is of, and the next mass of it */
   uint32_t *pass;         /* [n]: the last pass in which it was pushed */
   uint32_t passes;        /* the one under way */
-  bool joined;            /* there may be crowds */
   bool parts;             /* it only moves apart discs that overlap: velocities are left alone */
   double lost;            /* kinetic energy, in collisions of this drift */
   uint64_t collisions;
@@ -52,8 +51,5 @@ bool msri_drift_join(msri_drift *d, size_t i, size_t j);
 
 /* Makes one crowd of all. */
 void msri_drift_join_all(msri_drift *d);
-
-/* Turns round the velocities within every crowd. */
-void msri_drift_turn(msri_drift *d);
 
 #endif
