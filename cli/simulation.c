@@ -5,6 +5,8 @@
 #include "report.h"
 #include "study.h"
 
+#include <string.h>
+
 static msr_status load(const settings *s, msr_scene **scene, msr_error *err) {
   const msr_scene_options options = {.neighbours = (int)s->neighbours,
                                      .attach = s->attach,
@@ -109,7 +111,9 @@ msr_status simulation_plan(const settings *s, msr_plan **plan, msr_error *err) {
 bool simulation_contacts(const msr_plan *plan) {
   size_t n;
   const msr_effect *const effect = msr_plan_effects(plan, &n);
-  while (n > 0 && !(effect[n - 1].on && !effect[n - 1].force)) n--;
+  while (n > 0 && !(effect[n - 1].on && !effect[n - 1].force &&
+                    strcmp(effect[n - 1].name, "collisions") != 0))
+    n--;
   return n > 0;
 }
 

@@ -458,8 +458,10 @@ MSR_API msr_status msr_scene_set_contact(msr_scene *scene, double restitution, d
  * the line between the centres, so that momentum is kept to rounding, angular momentum too where
  * two collide and to the order of the step where more do at once, and energy is never made. Who is
  * closer to another at the start is moved apart from it, slowly, the centre of mass staying where it
- * is; as of its springs, that may add energy. Supports are met by the centre. Order 1 through a
- * collision, with either rule of msr_impacts. MSR_EUSAGE. */
+ * is, for which its springs may have to give way: that adds energy. Supports are met by the centre.
+ * Order 1 through a collision, with either rule of msr_impacts; with MSR_IMPACTS_LOCATED methods
+ * other than Verlet and symplectic Euler then end no step at an impact. Of more than
+ * 8 * masses + 4096 pairs that meet in one step the others aren't seen. MSR_EUSAGE. */
 MSR_API msr_status msr_scene_set_collisions(msr_scene *scene, double diameter, msr_error *err);
 
 typedef struct msr_mass {
