@@ -58,6 +58,10 @@ const option all_options[] = {
     {0, "restitution", "E", "normal speed kept by a bounce, 0 to 1 (1)", FOR_SCENES, &a_share,
      FIELD(restitution)},
     {0, "friction", "MU", "Coulomb friction at supports (0)", FOR_SCENES, &a_size, FIELD(friction)},
+    {0, "collide", NULL, "masses collide with each other, as discs", FOR_SCENES, &a_flag,
+     FIELD(collide)},
+    {0, "diameter", "D", "of these discs, in px (1)", FOR_SCENES, &a_positive, FIELD(diameter),
+     .needs = "--collide"},
 
     {0, "damping", "C", "damping along the springs, in kg/s (0)", FOR_SCENES, &a_size,
      FIELD(damping), .group = "Forces"},

@@ -29,11 +29,11 @@ typedef struct settings {
   double atol, rtol;
   double accuracy, until, budget; /* 0: not asked for */
   uint64_t neighbours, border_closed, seed, scale;
-  double wind, gust, gust_time, drag, damping, restitution, friction;
+  double wind, gust, gust_time, drag, damping, restitution, friction, diameter;
   push *pushes; /* [n_pushes] */
   size_t n_pushes;
   msr_style style; /* stripes only */
-  bool force, no_frames, attach, quiet, verbose, help, version;
+  bool force, no_frames, attach, collide, quiet, verbose, help, version;
   const char *program; /* what msr was called */
   struct typed *typed; /* [n_typed], options as they were typed, in order */
   size_t n_typed;

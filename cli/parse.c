@@ -117,7 +117,7 @@ static msr_status make_room(int argc, char **argv, settings *s, msr_error *err) 
 
 msr_status settings_parse(int argc, char **argv, settings *s, msr_error *err) {
   *s = (settings){.command = commands, .output = "frames", .gust = -1, .program = argv[0]};
-  s->gust_time = s->restitution = 1;
+  s->gust_time = s->restitution = s->diameter = 1;
   s->neighbours = 4;
   s->seed = s->scale = 1;
   s->atol = 1e-6;

@@ -5,6 +5,8 @@
 #include "report.h"
 #include "study.h"
 
+#include <string.h>
+
 static msr_status load(const settings *s, msr_scene **scene, msr_error *err) {
   const msr_scene_options options = {.neighbours = (int)s->neighbours,
                                      .attach = s->attach,
@@ -34,6 +36,7 @@ static msr_status add_push(const push *p, msr_scene *scene, msr_error *err) {
 static msr_status add_forces(const settings *s, msr_scene *scene, msr_error *err) {
   const msr_damping damping = {.z = s->damping};
   msr_status status = msr_scene_set_contact(scene, s->restitution, s->friction, err);
+  if (status == MSR_OK && s->collide) status = msr_scene_set_collisions(scene, s->diameter, err);
   if (status == MSR_OK && option_given(s, "--damping")) {
     status = msr_scene_add_force(scene, &msr_force_damping, &damping, err);
   }
@@ -108,7 +111,9 @@ msr_status simulation_plan(const settings *s, msr_plan **plan, msr_error *err) {
 bool simulation_contacts(const msr_plan *plan) {
   size_t n;
   const msr_effect *const effect = msr_plan_effects(plan, &n);
-  while (n > 0 && !(effect[n - 1].on && !effect[n - 1].force)) n--;
+  while (n > 0 && !(effect[n - 1].on && !effect[n - 1].force &&
+                    strcmp(effect[n - 1].name, "collisions") != 0))
+    n--;
   return n > 0;
 }
 

@@ -217,8 +217,9 @@ static void without_masses_all_is_off(void **unused) {
 
 static void effects_are_in_the_order_in_which_they_act(void **unused) {
   (void)unused;
-  static const char *const due[] = {"springs",  "push",   "drag", "push",    "wind",
-                                    "supports", "border", "drag", "gravity", "damping"};
+  static const char *const due[] = {"springs",    "push",     "drag",   "push",
+                                    "wind",       "supports", "border", "drag",
+                                    "collisions", "gravity",  "damping"};
   msr_scene *scene = scene_of(block_on_floor, &still, &closed_border);
   with(scene, &msr_force_push, &(msr_push){0, 1, 1});
   with(scene, &msr_force_drag, &(msr_drag){0.1});
@@ -261,6 +262,7 @@ static void reasons_say_what_is_meant(void **unused) {
       {plain, "supports", "there is no black pixel"},
       {closed, "border", "it is closed; restitution 1, friction 0"},
       {plain, "border", "it is open"},
+      {plain, "collisions", "not asked for"},
   };
   for (size_t i = 0; i < LENGTH(cases); i++) {
     const world r = run_of(cases[i].scene(), NULL);

@@ -28,6 +28,7 @@ strip big        big        4x1  0 45 70 149
 strip blocks     blocks     4x1  0 60 100 299
 strip bridge     bridge     4x1  0 28 50 70
 strip flag       flag       4x1  0 55 100 200
+strip heap       heap       4x1  0 40 80 199
 strip jelly      jelly      4x1  0 50 80 120
 strip laundry    laundry    4x1  0 50 90 160
 strip letters    letters    4x1  0 50 120 374

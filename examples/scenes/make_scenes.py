@@ -190,6 +190,15 @@ def pendulum():
     return p
 
 
+def heap():
+    p = Picture(160, 140)
+    p.paint(SUPPORT, lambda x, y: hypot(x - 80, y - 60) > 74 and y > 60 or x < 6 or x >= 154)
+    p.paint(stripes(10, RED, YELLOW), box(40, 10, 100, 2))
+    p.paint(sectors(62, 60, GREEN, CYAN, GREEN, CYAN), disc(62, 60, 13))
+    p.paint(sectors(90, 92, BLUE, VIOLET, BLUE, VIOLET), disc(90, 92, 16))
+    return p
+
+
 def turn():
     p = Picture(60, 60)
     p.paint(bands(4, RED, YELLOW), box(20, 20, 20, 20))
@@ -210,6 +219,8 @@ SCENES = {
              "--neighbours 8 --attach --drag 0.02", 80, 0.1, 40000, 2000, 250),
     flag: ("a flag, tied to its pole, in gusts of wind",
            "--attach --wind 200 --gust 80 --gust-time 0.7", 60, 0.1, 20000, 2400, 300),
+    heap: ("two balls and a rope fall on each other and come to rest",
+           "--neighbours 8 --collide --restitution 0.3 --damping 1", 60, 0.1, 12000, 1600, 200),
     jelly: ("bodies that keep their shape (8 neighbours) bounce, and lose some speed each time",
             "--neighbours 8 --restitution 0.9", 60, 0.1, 20000, 2400, 300),
     laundry: ("cloth (4 neighbours: it folds as it likes) hangs from a few threads in the wind",

@@ -41,6 +41,9 @@ typedef struct msri_contact {
   /* Puts those that met something between q0 and q on its edge and reflects v. Returns the number
    * of collisions. */
   uint64_t (*strike)(const void *self, size_t n, const double *q0, double *q, double *v);
+  /* Stops one mass that is pushed from `from` to `to` [2] short of what is in the way, if anything
+   * is: it keeps the coordinate along which it is. */
+  bool (*stop)(const void *self, const double *from, double *to);
   void (*release)(void *self);
 } msri_contact;
 

@@ -54,6 +54,14 @@ static void mark(msri_supports *s, const msr_picture *picture) {
     }
 }
 
+/* msri_contact's stop. */
+static bool stop(const void *self, const double *from, double *to) {
+  msri_leg leg = {.x = {from[0], from[1]}};
+  const unsigned met = msri_supports_keep(self, to, &leg);
+  to[0] = leg.x[0], to[1] = leg.x[1];
+  return met > 0;
+}
+
 msr_status msri_supports_create(const msr_picture *picture, const msri_supports_options *options,
                                 msri_contact *contact, msr_error *err) {
   const size_t words = picture->width * picture->height / MSRI_WORD + 1;
@@ -65,6 +73,7 @@ msr_status msri_supports_create(const msr_picture *picture, const msri_supports_
   mark(s, picture);
   *contact = options->impacts == MSR_IMPACTS_LOCATED ? msri_impacts_located : msri_impacts_kept;
   contact->self = s;
+  contact->stop = stop;
   contact->release = free;
   return MSR_OK;
 }

@@ -42,7 +42,10 @@ msr_status msri_state_drift(void *self, double h, const double *u, const double 
   const msri_contact *contact = &state->plan->contact;
   const size_t n = state->plan->figures.masses;
   double *owed = a ? state->owed : NULL;
-  const uint64_t collisions = contact->drift(contact->self, n, h, u, a, q, v, owed);
+  const uint64_t collisions =
+      state->plan->discs
+          ? msri_discs_drift(state->plan->discs, contact, state->discs, h, u, a, q, v, owed)
+          : contact->drift(contact->self, n, h, u, a, q, v, owed);
   state->known.q = NULL;
   count(state, collisions);
   return owed && collisions > 0 ? settle(state, q, v) : MSR_OK;
@@ -55,7 +58,10 @@ msr_status msri_state_bounce(void *self, double h, const double *q0, const doubl
   const size_t n = state->plan->figures.masses;
   // in the last moment of a step what is owed is nothing, and the rounding of (q - q0) / h is much
   double *owed = contact->meet && h > 1e-3 * state->plan->figures.h ? state->owed : NULL;
-  const uint64_t collisions = contact->bounce(contact->self, n, h, q0, v0, q, v, owed);
+  const uint64_t collisions =
+      state->plan->discs
+          ? msri_discs_bounce(state->plan->discs, contact, state->discs, h, q0, v0, q, v, owed)
+          : contact->bounce(contact->self, n, h, q0, v0, q, v, owed);
   *met = collisions > 0;
   state->known.q = NULL;
   count(state, collisions);

@@ -48,7 +48,7 @@ static double at_start(const msr_plan *plan, const msr_view *s) {
   const msr_springs *springs = &plan->mesh.springs;
   double energy = 0, whole = 0;
   if (plan->n_picture == s->n) return 0;
-  for (size_t i = 0; plan->contact.drift && i < s->n; i++)
+  for (size_t i = 0; msri_plan_meets(plan) && i < s->n; i++)
     energy += msr_view_mass(s, i) * (s->vx[i] * s->vx[i] + s->vy[i] * s->vy[i]);
   for (size_t r = 0; r < springs->n_runs; r++) whole += stiffness_of(&springs->run[r], s, &energy);
   return whole > 0 ? energy / whole : 0;
@@ -59,9 +59,9 @@ bool msri_plan_crushes(const msr_plan *plan, const msr_view *start) {
 }
 
 double msri_plan_safe_share(const msr_plan *plan, const msr_view *start) {
-  const bool supports = plan->contact.drift != NULL;
+  const bool meets = msri_plan_meets(plan);
   if (!plan->cares && msri_plan_crushes(plan, start)) return 0.5 / 64;
-  if (!supports) return 0.9;
+  if (!meets) return 0.9;
   if (plan->cares) return plan->conserves ? 0.42 : 0.5;
   const double crushed = by_fall(plan) / crushing;
   return crushed > 1 ? 0.5 / msri_min(crushed, 8) : 0.5;

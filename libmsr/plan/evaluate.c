@@ -111,7 +111,7 @@ static msr_status damp(void *self, double t, double h, bool backward, const doub
 }
 
 msr_system msri_state_system(msr_state *state) {
-  const bool own = state->plan->contact.drift && !msri_plan_bounces(state->plan);
+  const bool own = msri_plan_meets(state->plan) && !msri_plan_bounces(state->plan);
   msr_system system = {
       .n = 2 * state->plan->figures.masses,
       .self = state,

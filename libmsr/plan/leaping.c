@@ -39,7 +39,7 @@ static msr_status explain(msr_plan *plan, msr_error *err) {
 
 bool msri_plan_can_leap(const msr_plan *plan) {
   const size_t n = plan->figures.masses, springs = plan->mesh.springs.n;
-  return springs > 0 && n < UINT32_MAX && springs < UINT32_MAX &&
+  return springs > 0 && n < UINT32_MAX && springs < UINT32_MAX && !plan->discs &&
          (!plan->contact.drift || plan->contact.hold);
 }
 

@@ -114,7 +114,25 @@ static msr_status add_contact(msr_plan *plan, const msr_scene *scene, msr_error 
 static bool conserves(const msr_plan *plan, const msr_scene *scene) {
   for (size_t i = 0; i < plan->n_terms; i++)
     if (!plan->term[i].force->conservative || plan->term[i].force->uses_time) return false;
-  return !plan->contact.drift || (scene->restitution == 1 && scene->friction == 0);
+  return !msri_plan_meets(plan) || (scene->restitution == 1 && scene->friction == 0);
+}
+
+static msr_status add_collisions(msr_plan *plan, const msr_scene *scene, const msr_view *start,
+                                 msr_error *err) {
+  const char *off = "not asked for";
+  msr_status status = MSR_OK;
+  if (scene->diameter > 0 && start->n > 1) {
+    status = msri_discs_create(start, scene->diameter, scene->restitution, &plan->discs, err);
+    off = "no two masses that could meet";
+  } else if (scene->diameter > 0) {
+    off = "fewer than two masses";
+  }
+  char *reason = add_effect(plan, "collisions", plan->discs, NULL);
+  msri_format(reason, MSR_MESSAGE_SIZE, "%s", off);
+  if (plan->discs)
+    msri_format(reason, MSR_MESSAGE_SIZE, "asked for: discs of diameter %g px; restitution %g",
+                scene->diameter, scene->restitution);
+  return status;
 }
 
 static bool listed(const msr_plan *plan, const msr_force *force) {
@@ -141,7 +159,7 @@ static void sort_effects(msr_plan *plan, msr_effect *spare) {
 
 static msr_status call_for_effects(msr_plan *plan, const msr_scene *scene, const msr_view *start,
                                    msr_error *err) {
-  enum { CONTACTS = 2 };
+  enum { CONTACTS = 3 };
   size_t most = 1 + scene->n_forces + CONTACTS;
   for (const msr_force *const *f = msr_forces; *f; f++) most++;
   plan->term = msri_alloc(1 + scene->n_forces, sizeof *plan->term, "the forces", err);
@@ -152,6 +170,7 @@ static msr_status call_for_effects(msr_plan *plan, const msr_scene *scene, const
   for (size_t i = 0; i < scene->n_forces && status == MSR_OK; i++)
     status = add_term(plan, scene->force[i].force, scene->force[i].params, start, err);
   if (status == MSR_OK) status = add_contact(plan, scene, err);
+  if (status == MSR_OK) status = add_collisions(plan, scene, start, err);
   if (status != MSR_OK) return status;
   add_absent(plan);
   sort_effects(plan, plan->effect + most);
@@ -169,7 +188,8 @@ static void count_memory(msr_plan *plan) {
       (plan->m ? f->masses * sizeof *plan->m : 0) + mesh->run_capacity * sizeof *mesh->run +
       mesh->n_added * (sizeof *mesh->k + sizeof *mesh->L) +
       mesh->anchor_capacity * sizeof *mesh->anchor + (plan->graph ? plan->graph->bytes : 0) +
-      (plan->contact.drift ? f->width * f->height / 8 : 0);
+      (plan->contact.drift ? f->width * f->height / 8 : 0) +
+      (plan->discs ? msri_discs_bytes(plan->discs) : 0);
   f->state_bytes = msri_state_bytes(plan);
 }
 
@@ -243,6 +263,7 @@ void msr_plan_free(msr_plan *plan) {
     free(plan->term[i].params);
   }
   if (plan->contact.release) plan->contact.release(plan->contact.self);
+  msri_discs_free(plan->discs);
   free(plan->graph);
   msri_mesh_clear(&plan->mesh);
   msri_notes_clear(&plan->notes);

@@ -5,6 +5,7 @@
 #include "base/base.h"
 #include "base/notes.h"
 #include "contacts/contact.h"
+#include "contacts/discs.h"
 #include "scene/scene.h"
 #include "solvers/graph.h"
 
@@ -58,7 +59,8 @@ struct msr_plan {
   bool followed;        /* one of them doesn't tell its power: likewise, mass by mass */
   bool middle;          /* a force without between() acts in the middle of a step: likewise */
   msri_graph *graph;    /* of the springs, if the integrator is implicit */
-  msri_contact contact; /* drift NULL: nothing is ever in the way */
+  msri_contact contact; /* drift NULL: nothing stands in the way */
+  msri_discs *discs;    /* NULL: masses don't collide with each other */
   msr_effect *effect;   /* [n_effects]; the first n_terms are the terms */
   char (*reason)[MSR_MESSAGE_SIZE]; /* of the effects */
   size_t n_effects;
@@ -84,21 +86,32 @@ static inline bool msri_force_is_outer(const msr_force *force) {
   return force->conservative && force != &msr_force_springs;
 }
 
+/* May anything ever be in the way? */
+static inline bool msri_plan_meets(const msr_plan *plan) {
+  return plan->contact.drift || plan->discs;
+}
+
+/* Do steps end at impacts, of methods that don't see to them as they drift? */
+static inline bool msri_plan_ends_at_impacts(const msr_plan *plan) {
+  return plan->contact.meet && !plan->discs;
+}
+
 /* Does the library see to contacts after each step? Where the integrator doesn't, or where it would
  * do so after each of its own, but impacts are better located by its dense steps. */
 static inline bool msri_plan_bounces(const msr_plan *plan) {
   const msr_integrator *integrator = plan->figures.integrator;
-  if (!plan->contact.bounce || (integrator->holds && plan->contact.hold)) return false;
-  return !integrator->bounces || (integrator->adaptive && plan->contact.meet);
+  if (!msri_plan_meets(plan) || (integrator->holds && plan->contact.hold && !plan->discs))
+    return false;
+  return !integrator->bounces || (integrator->adaptive && msri_plan_ends_at_impacts(plan));
 }
 
 /* Does what met something need the acceleration at the end of the step? Implicit methods, whose
  * steps may be too long for what that would say, do without; so do methods that leave contacts to
- * the library, where places are kept. */
+ * the library, where places are kept, and masses that others may push away. */
 static inline bool msri_plan_settles(const msr_plan *plan) {
   const msr_integrator *integrator = plan->figures.integrator;
   if (!plan->contact.drift || integrator->implicit) return false;
-  return plan->contact.meet || integrator->bounces;
+  return plan->contact.meet || (integrator->bounces && !plan->discs);
 }
 
 /* The time after so many iterations and substeps: made of whole numbers, never summed, so that

@@ -61,7 +61,7 @@ static const double resolved = 2;
  * buckle. */
 static double safe_step(const msr_plan *plan) {
   const msr_plan_figures *f = &plan->figures;
-  const bool follows = plan->contact.drift || f->integrator->symplectic;
+  const bool follows = msri_plan_meets(plan) || f->integrator->symplectic;
   const bool any = f->integrator->implicit && isinf(f->stable_step) && f->omega > 0;
   return plan->safe_share * (any && follows ? resolved / f->omega : f->stable_step);
 }

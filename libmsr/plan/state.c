@@ -14,8 +14,8 @@ enum { ALIGNMENT = 64 };
 
 /* Where each array lies after the block's first aligned byte; `end` is after the last. */
 typedef struct layout {
-  size_t solver, q, v, work, before, owed, ahead, middle, between, drive, scratch, calls, start,
-      leap, kept, end;
+  size_t solver, q, v, work, before, owed, ahead, middle, between, drive, discs, scratch, calls,
+      start, leap, kept, end;
 } layout;
 
 static size_t reserve(size_t *end, size_t bytes) {
@@ -43,6 +43,7 @@ static layout lay_out(const msr_plan *plan) {
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
   l.between = reserve(&end, plan->middle ? 2 * vector : 0);
   l.drive = reserve(&end, plan->followed ? vector : 0);
+  l.discs = reserve(&end, plan->discs ? msri_discs_room(plan->discs) : 0);
   l.scratch = reserve(&end, plan->scratch_bytes);
   l.start = reserve(&end, plan->leaping.method ? 4 * vector : 0);
   l.leap = reserve(&end, plan->leaping.method ? plan->leaping.method->vectors * vector : 0);
@@ -84,6 +85,7 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .middle = (void *)(arrays + l.middle),
       .between = (void *)(arrays + l.between),
       .drive = (void *)(arrays + l.drive),
+      .discs = arrays + l.discs,
       .scratch = arrays + l.scratch,
       .calls = (void *)(arrays + l.calls),
   };
@@ -165,6 +167,7 @@ void msri_state_touched(msr_state *state) {
   state->fresh = false;
   state->known.q = NULL;
   state->guard.begun = state->care.begun = false;
+  if (state->plan->discs) msri_discs_forget(state->plan->discs, state->discs);
 }
 
 /* ---- Reading */

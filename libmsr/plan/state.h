@@ -70,6 +70,7 @@ struct msr_state {
   double *middle;           /* [4n] if plan->midpoint: force, velocity */
   double *between;          /* [4n] if plan->middle: the middle, force */
   double *drive;            /* [2n] if plan->followed: driving forces */
+  void *discs;              /* memory of plan->discs, if there are */
   char *scratch;            /* [plan->scratch_bytes] */
   uint64_t *calls;          /* [plan->n_effects] */
   msri_stiffness stiffness; /* if plan->graph */

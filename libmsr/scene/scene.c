@@ -58,6 +58,13 @@ msr_status msr_scene_set_contact(msr_scene *scene, double restitution, double fr
   return MSR_OK;
 }
 
+msr_status msr_scene_set_collisions(msr_scene *scene, double diameter, msr_error *err) {
+  if (!(diameter >= 0 && isfinite(diameter)))
+    return msri_fail(err, MSR_EUSAGE, "a diameter must be finite and 0 or more, not %g", diameter);
+  scene->diameter = diameter;
+  return MSR_OK;
+}
+
 /* Is the point in a black pixel of the scene's picture, or beyond its closed border? */
 static bool in_support(const msr_scene *scene, double x, double y) {
   const msr_picture *p = scene->picture;

@@ -20,6 +20,7 @@ struct msr_scene {
   msr_conf conf;
   msr_scene_options options;
   double restitution, friction;
+  double diameter;           /* of masses that collide; 0: they don't */
   msr_picture *picture;      /* NULL: none */
   size_t n_picture;          /* masses of the picture; the program's follow */
   size_t n_supports;         /* black pixels */

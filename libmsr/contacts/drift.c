@@ -1,0 +1,201 @@
+/* drift.c - ways and velocities of discs that meet, changed together.
+ *
+ * A free drift is d = h v. Whatever changes a way by D changes the velocity by (1 + e) D / h. If in
+ * the end no pair's way leads them together, and all D are sums of s n / m with s > 0, n the normal
+ * of a pair, then <d, h v - d> >= 0 in the metric of the masses, and so the new velocity has no
+ * more kinetic energy than v, and just as much if e = 1 and nobody was pushed away from whom he had
+ * met (Moreau 1988, Unilateral contact and dry friction in finite freedom dynamics). And as the way
+ * is the mean of both velocities if e = 1, the work of the forces on it is what it should be: no
+ * heat.
+ *
+ * What can't be so solved becomes a crowd: all of it go the way of its centre of mass, so that
+ * nobody comes nearer to anybody, and the velocities against that centre are reversed. */
+#include "contacts/drift.h"
+
+#include <math.h>
+
+/* ---- Energy */
+
+/* What a change of ways by D does to the kinetic energy if velocities change by f D: the sum of
+ * f m v.D + f^2 m D.D / 2. */
+typedef struct work {
+  double linear, square;
+} work;
+
+static void do_work(work *w, double m, msri_vec v, msri_vec change) {
+  w->linear += m * (v.x * change.x + v.y * change.y);
+  w->square += m * (change.x * change.x + change.y * change.y);
+}
+
+/* The factor f, or, if that would take more energy than collisions have lost, one that doesn't. */
+static double allowed(msri_drift *d, const work *w, double f) {
+  if (d->parts) return 0;
+  if (f * (w->linear + f * w->square / 2) > d->lost) {
+    const double root = sqrt(w->linear * w->linear + 2 * w->square * d->lost);
+    f = w->square > 0 ? msri_max(0, root - w->linear) / w->square : 0;
+  }
+  d->lost = msri_max(0, d->lost - f * (w->linear + f * w->square / 2));
+  return f;
+}
+
+/* ---- One mass */
+
+/* Its velocity in the middle of the step. */
+static msri_vec velocity(const msri_drift *d, size_t i) {
+  const double *vx = d->v, *vy = vx + d->n, *kx = d->kick, *ky = kx ? kx + d->n : NULL;
+  if (!kx) return (msri_vec){vx[i], vy[i]};
+  return (msri_vec){vx[i] - d->behind * kx[i], vy[i] - d->behind * ky[i]};
+}
+
+static msri_vec way_of(const msri_drift *d, size_t i) {
+  return (msri_vec){d->q[i] - d->q0[i], d->q[d->n + i] - d->q0[d->n + i]};
+}
+
+/* It goes `way` now. */
+static void redirect(const msri_drift *d, size_t i, msri_vec way) {
+  d->q[i] = d->q0[i] + way.x, d->q[d->n + i] = d->q0[d->n + i] + way.y;
+  d->pass[i] = d->passes;
+}
+
+static void speed_up(const msri_drift *d, size_t i, double x, double y) {
+  d->v[i] += x, d->v[d->n + i] += y;
+  if (d->owed) d->owed[i] = d->owed[d->n + i] = 0;
+}
+
+/* Supports stop a mass that was pushed. */
+static void obstruct(msri_drift *d, size_t i) {
+  const size_t n = d->n;
+  const double from[] = {d->q0[i], d->q0[n + i]};
+  double to[] = {d->q[i], d->q[n + i]};
+  work w = {0};
+  if (!d->supports->stop || !d->supports->stop(d->supports->self, from, to)) return;
+  const msri_vec change = {to[0] - d->q[i], to[1] - d->q[n + i]};
+  do_work(&w, msri_drift_mass(d, i), velocity(d, i), change);
+  const double f = allowed(d, &w, (1 + d->restitution) / d->h);
+  speed_up(d, i, f * change.x, f * change.y);
+  d->q[i] = to[0], d->q[n + i] = to[1];
+  d->pass[i] = d->passes;
+}
+
+/* ---- A pair */
+
+static double kick_along(const msri_drift *d, size_t i, msri_vec n) {
+  return d->kick ? d->half * (d->kick[i] * n.x + d->kick[d->n + i] * n.y) : 0;
+}
+
+/* The restitution of two that meet along n at a speed. They rest on each other if, with what e
+ * leaves them of it, half a kick brings them back: then they leave with what that takes away. */
+static double restitution_of(const msri_drift *d, const msri_disc_pair *p, msri_vec n,
+                             double speed) {
+  const double e = d->restitution;
+  if (e == 1 || !(speed > 0)) return e;
+  const double ki = kick_along(d, p->i, n), kj = kick_along(d, p->j, n);
+  if (e * speed > fabs(ki) + fabs(kj)) return e;
+  return msri_min(1, msri_max(0, ki - kj) / speed);
+}
+
+/* Would it go further than it may? */
+static bool is_too_far(const msri_drift *d, size_t i, msri_vec n, double s) {
+  const msri_vec way = way_of(d, i);
+  const double x = way.x + s * n.x, y = way.y + s * n.y;
+  return x * x + y * y > d->most * d->most;
+}
+
+/* Pushes two apart by s along n, their centre of mass staying where it is; by less if one would go
+ * too far. */
+static void push_apart(msri_drift *d, const msri_disc_pair *p, msri_vec n, double s) {
+  const size_t i = p->i, j = p->j;
+  const double mi = msri_drift_mass(d, i), mj = msri_drift_mass(d, j);
+  const double of_i = -(mj / (mi + mj)), of_j = mi / (mi + mj);
+  while (is_too_far(d, i, n, s * of_i) || is_too_far(d, j, n, s * of_j)) s = s > 1e-12 ? s / 2 : 0;
+  const msri_vec vi = velocity(d, i), vj = velocity(d, j);
+  const double speed = (vi.x - vj.x) * n.x + (vi.y - vj.y) * n.y, m = mj * of_j;
+  const work w = {-m * speed * s, m * s * s};
+  const double f = s * allowed(d, &w, (1 + restitution_of(d, p, n, speed)) / d->h);
+  const msri_vec di = way_of(d, i), dj = way_of(d, j);
+  redirect(d, i, (msri_vec){di.x + s * of_i * n.x, di.y + s * of_i * n.y});
+  redirect(d, j, (msri_vec){dj.x + s * of_j * n.x, dj.y + s * of_j * n.y});
+  speed_up(d, i, f * of_i * n.x, f * of_i * n.y);
+  speed_up(d, j, f * of_j * n.x, f * of_j * n.y);
+  d->collisions += speed > 0 && !d->parts;
+}
+
+bool msri_drift_collide(msri_drift *d, size_t i, size_t j) {
+  if (d->pass[i] + 1 < d->passes && d->pass[j] + 1 < d->passes) return false; // as it was
+  const msri_disc_pair p = msri_drift_pair(d, i, j);
+  if (!msri_disc_pair_meets(&p)) return false;
+  const msri_vec n = msri_disc_pair_normal(&p, d->restitution);
+  const double s = msri_disc_pair_gap(&p) - (p.way.x * n.x + p.way.y * n.y);
+  if (!(s > 0)) return false;
+  push_apart(d, &p, n, s);
+  obstruct(d, i);
+  obstruct(d, j);
+  return true;
+}
+
+/* ---- Crowds: rings of masses that go the same way */
+
+void msri_drift_part(msri_drift *d) {
+  for (size_t i = 0; i < d->n; i++) d->crowd[i] = d->next[i] = (uint32_t)i;
+}
+
+/* The way of its centre of mass. */
+static msri_vec common_way(const msri_drift *d, size_t first) {
+  msri_vec sum = {0, 0};
+  double mass = 0;
+  size_t i = first;
+  do {
+    const double m = msri_drift_mass(d, i);
+    const msri_vec way = way_of(d, i);
+    sum.x += m * way.x, sum.y += m * way.y, mass += m;
+  } while ((i = d->next[i]) != first);
+  return (msri_vec){sum.x / mass, sum.y / mass};
+}
+
+static void go_together(msri_drift *d, size_t first, msri_vec way) {
+  work w = {0};
+  size_t i = first;
+  do {
+    const msri_vec old = way_of(d, i);
+    do_work(&w, msri_drift_mass(d, i), velocity(d, i), (msri_vec){way.x - old.x, way.y - old.y});
+  } while ((i = d->next[i]) != first);
+  const double f = allowed(d, &w, (1 + d->restitution) / d->h);
+  do {
+    const msri_vec old = way_of(d, i);
+    speed_up(d, i, f * (way.x - old.x), f * (way.y - old.y));
+    redirect(d, i, way);
+  } while ((i = d->next[i]) != first);
+}
+
+static bool is_stopped(const msri_drift *d, size_t first) {
+  size_t i = first;
+  if (!d->supports->stop) return false;
+  do {
+    const double from[] = {d->q0[i], d->q0[d->n + i]};
+    double to[] = {d->q[i], d->q[d->n + i]};
+    if (d->supports->stop(d->supports->self, from, to)) return true;
+  } while ((i = d->next[i]) != first);
+  return false;
+}
+
+static void swap_next(const msri_drift *d, size_t i, size_t j) {
+  const uint32_t after = d->next[i];
+  d->next[i] = d->next[j], d->next[j] = after;
+}
+
+/* The joint crowd goes the way of its centre of mass; or, if that leads into a support, nowhere. */
+bool msri_drift_join(msri_drift *d, size_t i, size_t j) {
+  const msri_disc_pair p = msri_drift_pair(d, i, j);
+  if (d->crowd[i] == d->crowd[j] || !msri_disc_pair_meets(&p)) return false;
+  for (size_t k = j; d->crowd[k] != d->crowd[i]; k = d->next[k]) d->crowd[k] = d->crowd[i];
+  swap_next(d, i, j);
+  go_together(d, i, common_way(d, i));
+  if (is_stopped(d, i)) go_together(d, i, (msri_vec){0, 0});
+  return true;
+}
+
+void msri_drift_join_all(msri_drift *d) {
+  for (size_t i = 0; i < d->n; i++) d->crowd[i] = 0, d->next[i] = (uint32_t)((i + 1) % d->n);
+  go_together(d, 0, common_way(d, 0));
+  if (is_stopped(d, 0)) go_together(d, 0, (msri_vec){0, 0});
+}

@@ -1,0 +1,55 @@
+/* drift.h - a drift of discs under way: what collisions change of it. */
+#ifndef MSRI_DRIFT_H
+#define MSRI_DRIFT_H
+
+#include "contacts/contact.h"
+#include "contacts/disc_pair.h"
+#include "contacts/near.h"
+
+typedef struct msri_drift {
+  size_t n;
+  const double *m; /* mass i is m[i * m_stride] */
+  size_t m_stride;
+  double diameter, restitution;
+  const msri_contact *supports;
+  double h;
+  const double *q0;       /* [2n]: places before */
+  double *q, *v;          /* [2n]: places after, so far */
+  const double *kick;     /* [2n]: `half` of it is half a kick by the acceleration; NULL: none */
+  double half, behind;    /* what v is ahead of the velocity in the middle of the step, in kicks */
+  double *owed;           /* [2n] as in contact.h; may be NULL */
+  double apart;           /* by which discs that overlap may part [px] */
+  double most;            /* how far one may be pushed [px] */
+  uint32_t *crowd, *next; /* [n]: the crowd that a mass is of, and the next mass of it */
+  uint32_t *pass;         /* [n]: the last pass in which it was pushed */
+  uint32_t passes;        /* the one under way */
+  bool parts;             /* it only moves apart discs that overlap: velocities are left alone */
+  double lost;            /* kinetic energy, in collisions of this drift */
+  uint64_t collisions;
+} msri_drift;
+
+static inline double msri_drift_mass(const msri_drift *d, size_t i) {
+  return d->m[i * d->m_stride];
+}
+
+/* The pair as it goes so far. */
+static inline msri_disc_pair msri_drift_pair(const msri_drift *d, size_t i, size_t j) {
+  const double *x0 = d->q0, *y0 = x0 + d->n, *x = d->q, *y = x + d->n;
+  const msri_vec from = {x0[j] - x0[i], y0[j] - y0[i]};
+  const msri_vec way = {(x[j] - x0[j]) - (x[i] - x0[i]), (y[j] - y0[j]) - (y[i] - y0[i])};
+  return (msri_disc_pair){i, j, from, way, d->diameter, d->parts ? d->apart : 0};
+}
+
+/* If the pair meets, puts it right. Returns whether it met. */
+bool msri_drift_collide(msri_drift *d, size_t i, size_t j);
+
+/* Every mass is a crowd by itself. */
+void msri_drift_part(msri_drift *d);
+
+/* If the pair meets, makes one crowd of theirs. Returns whether it did. */
+bool msri_drift_join(msri_drift *d, size_t i, size_t j);
+
+/* Makes one crowd of all. */
+void msri_drift_join_all(msri_drift *d);
+
+#endif
