@@ -53,3 +53,18 @@ double msri_mesh_longest(const msr_view *s) {
   }
   return longest;
 }
+
+double msri_mesh_buckling(const msr_view *s) {
+  double most = 0;
+  for (size_t r = 0; r < s->springs->n_runs; r++) {
+    const msr_run_of_springs *run = &s->springs->run[r];
+    for (size_t n = 0; n < run->count; n++) {
+      const size_t i = run->first + n, j = i + run->offset;
+      const double dx = s->x[j] - s->x[i], dy = s->y[j] - s->y[i], l = sqrt(dx * dx + dy * dy);
+      const double push = run->k[n * run->stride] * (run->L[n * run->stride] - l);
+      const double m = msri_min(msr_view_mass(s, i), msr_view_mass(s, j));
+      if (push > most * l * m) most = push / (l * m);
+    }
+  }
+  return most;
+}

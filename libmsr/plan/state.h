@@ -37,6 +37,7 @@ typedef struct msri_leap_memory {
   double *start, *before; /* [4n]: q, v where the iteration began, and before a leap */
   double *vector;         /* of the method: [vectors][2n] */
   uint64_t leaps, leapt;  /* so far; and substeps that they took the place of */
+  double spent;           /* on leaps and tries, in evaluations of the acceleration */
 } msri_leap_memory;
 
 /* See run/care.c. */
