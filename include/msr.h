@@ -620,12 +620,12 @@ typedef struct msr_stability {
   msr_limit damped;    /* as at_rest, with all that depends on v: by one step of the method for each
                         * frequency up to the largest and its damping, which is known where drag
                         * meets equal masses, or damping equal springs at rest; else bounded */
-  double bound;        /* below the last two: stable_step of the figures, by which substeps are
+  double bound;        /* not above any of these: stable_step of the figures, by which substeps are
                         * chosen (Gershgorin) [s] */
 } msr_stability;
 
 /* Analyses the plan: some 100 products of the matrix of springs with a vector, in a second for a
- * lattice of 10^6 masses; memory, given back: 11 doubles a mass. MSR_ENOMEM, or what
+ * lattice of 10^6 masses; memory, given back: 13 doubles a mass. MSR_ENOMEM, or what
  * force->rates, force->add, or the integrator's step returns. */
 MSR_API msr_status msr_plan_stability(const msr_plan *plan, msr_stability *stability,
                                       msr_error *err);

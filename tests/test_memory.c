@@ -202,6 +202,17 @@ static void plans(void **unused) {
   assert_each_failure_is_told(make_plans, 60);
 }
 
+static bool analyse(void) {
+  msr_error err = {MSR_OK, ""};
+  msr_stability found;
+  return done(msr_plan_stability(plan, &found, &err), &err);
+}
+
+static void analyses(void **unused) {
+  (void)unused;
+  assert_each_failure_is_told(analyse, 3);
+}
+
 static bool make_and_run_states(void) {
   msr_error err;
   msr_state *state = NULL;
@@ -364,6 +375,7 @@ int main(void) {
       cmocka_unit_test(scenes),
       cmocka_unit_test(a_scene_survives_failures),
       cmocka_unit_test_setup_teardown(plans, make_plan, free_plan),
+      cmocka_unit_test_setup_teardown(analyses, make_plan, free_plan),
       cmocka_unit_test_setup_teardown(states, make_plan, free_plan),
       cmocka_unit_test_setup_teardown(files_of_states, make_plan, free_plan),
       cmocka_unit_test_setup_teardown(renderers, make_plan, free_plan),
