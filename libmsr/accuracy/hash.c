@@ -44,8 +44,9 @@ static uint64_t add_force(uint64_t hash, const msri_scene_force *force) {
 
 static uint64_t add_options(uint64_t hash, const msr_scene *scene) {
   const msr_conf *c = &scene->conf;
-  const double numbers[] = {c->dt,        c->gravity,         c->mass,
-                            c->stiffness, scene->restitution, scene->friction, scene->diameter};
+  const double numbers[] = {c->dt,          c->gravity,         c->mass,
+                            c->stiffness,   scene->restitution, scene->friction,
+                            scene->diameter};
   const uint64_t counts[] = {c->iterations, c->images, (uint64_t)scene->options.neighbours,
                              scene->options.attach, scene->options.closed_border};
   return msri_hash_words(msri_hash_words(hash, numbers, COUNT(numbers)), counts, COUNT(counts));

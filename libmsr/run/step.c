@@ -79,9 +79,8 @@ static msr_status step_and_bounce(msr_state *state, const msr_system *system,
 static msr_status step(msr_state *state, const msr_system *system, const msr_interval *interval,
                        msr_error *err) {
   if (!msri_plan_bounces(state->plan)) return msri_step_once(state, system, interval, err);
-  return msri_plan_ends_at_impacts(state->plan)
-             ? msri_step_by_impacts(state, system, interval, err)
-             : step_and_bounce(state, system, interval, err);
+  return msri_plan_ends_at_impacts(state->plan) ? msri_step_by_impacts(state, system, interval, err)
+                                                : step_and_bounce(state, system, interval, err);
 }
 
 /* One substep. */
