@@ -403,7 +403,8 @@ MSR_API extern const msr_integrator msr_integrator_msadams;
 
 /* Implicit, stable at any step where forces are linear. Each stage is solved to rounding by
  * Newton's method, with the system's linearise and solve or, without them, by differences of a
- * (BiCGSTAB; van der Vorst 1992). Memory: 7 vectors of n doubles, of sdirk2 8; without solve, 7
+ * (BiCGSTAB; van der Vorst 1992). Memory: 7 vectors of n doubles, of sdirk2 8,
+ * of energy-momentum 9; without solve, 7
  * more; on a scene, the matrix of its springs, which msr_plan_figures counts. What depends on v
  * acts by damp(), for half a step at each end. MSR_EUNSTABLE if a stage isn't solved in 200
  * iterations, or isn't finite; on a scene of 2^32 - 1 masses or springs or more, msr_plan_create
@@ -770,7 +771,7 @@ MSR_API msr_status msr_sink_close(msr_sink *sink, msr_error *err);
 typedef struct msr_run_options {
   const msr_sink *sinks; /* [n_sinks], each given every frame in turn */
   size_t n_sinks;
-  /* Called before every substep with the state (NULL: none); a status other than MSR_OK ends the
+  /* Called before every substep and every leap with the state (NULL: none); a status other than MSR_OK ends the
    * run and comes back unchanged. Running the state again goes on from there. */
   msr_status (*poll)(void *data, const msr_state *state);
   void *data;
