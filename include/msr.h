@@ -771,8 +771,8 @@ MSR_API msr_status msr_sink_close(msr_sink *sink, msr_error *err);
 typedef struct msr_run_options {
   const msr_sink *sinks; /* [n_sinks], each given every frame in turn */
   size_t n_sinks;
-  /* Called before every substep and every leap with the state (NULL: none); a status other than MSR_OK ends the
-   * run and comes back unchanged. Running the state again goes on from there. */
+  /* Called before every substep and every leap with the state (NULL: none); a status other than
+   * MSR_OK ends the run and comes back unchanged. Running the state again goes on from there. */
   msr_status (*poll)(void *data, const msr_state *state);
   void *data;
 } msr_run_options;
