@@ -103,6 +103,14 @@ static msr_scene *wind(void) {
   return with(plain(), &msr_force_wind, &(msr_wind){.speed = 1, .gust = 1, .seed = 7});
 }
 
+static msr_scene *with_discs(msr_scene *scene, double diameter) {
+  must(msr_scene_set_collisions(scene, diameter, &why));
+  return scene;
+}
+
+static msr_scene *discs(void) { return with_discs(plain(), 0.5); }
+static msr_scene *no_discs(void) { return with_discs(plain(), 0); }
+
 static const struct row {
   const char *name;
   msr_scene *(*on)(void), *(*off)(void), *(*never)(void);
@@ -115,6 +123,7 @@ static const struct row {
     {"push", push, no_push, plain},
     {"supports", on_floor, plain, plain},
     {"border", closed, plain, plain},
+    {"collisions", discs, no_discs, plain},
 };
 
 /* A new row in the library's table must have one here. */
@@ -233,7 +242,7 @@ static void effects_are_in_the_order_in_which_they_act(void **unused) {
   for (size_t e = 0; e < n; e++) {
     assert_string_equal(effects[e].name, due[e]);
     assert_int_equal(effects[e].on, e < 7);
-    assert_int_equal(effects[e].force == NULL, e == 5 || e == 6);
+    assert_int_equal(effects[e].force == NULL, e == 5 || e == 6 || e == 8);
   }
   close_world(r);
 }

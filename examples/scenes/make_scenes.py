@@ -219,7 +219,7 @@ SCENES = {
              "--neighbours 8 --attach --drag 0.02", 80, 0.1, 40000, 2000, 250),
     flag: ("a flag, tied to its pole, in gusts of wind",
            "--attach --wind 200 --gust 80 --gust-time 0.7", 60, 0.1, 20000, 2400, 300),
-    heap: ("two balls and a rope fall on each other and come to rest",
+    heap: ("two balls and a rope fall into a bowl, and on each other",
            "--neighbours 8 --collide --restitution 0.3 --damping 1", 60, 0.1, 12000, 1600, 200),
     jelly: ("bodies that keep their shape (8 neighbours) bounce, and lose some speed each time",
             "--neighbours 8 --restitution 0.9", 60, 0.1, 20000, 2400, 300),
