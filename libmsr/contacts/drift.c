@@ -107,7 +107,8 @@ static void push_apart(msri_drift *d, const msri_disc_pair *p, msri_vec n, doubl
   const size_t i = p->i, j = p->j;
   const double mi = msri_drift_mass(d, i), mj = msri_drift_mass(d, j);
   const double of_i = -(mj / (mi + mj)), of_j = mi / (mi + mj);
-  while (is_too_far(d, i, n, s * of_i) || is_too_far(d, j, n, s * of_j)) s = s > 1e-12 ? s / 2 : 0;
+  while (s > 0 && (is_too_far(d, i, n, s * of_i) || is_too_far(d, j, n, s * of_j)))
+    s = s > 1e-12 ? s / 2 : 0;
   const msri_vec vi = velocity(d, i), vj = velocity(d, j);
   const double speed = (vi.x - vj.x) * n.x + (vi.y - vj.y) * n.y, m = mj * of_j;
   const work w = {-m * speed * s, m * s * s};

@@ -48,6 +48,7 @@ msr_status msri_plan_choose_leaps(msr_plan *plan, msr_error *err) {
   const double substep = plan->contact.drift ? supported_substep : free_substep;
   const uint64_t leg = leg_of(plan);
   if (!msri_plan_can_leap(plan)) return MSR_OK;
+  plan->leaping.reach = reach;
   if (share * substep * (double)leg < cheapest) return MSR_OK;
   const msr_status status = msri_graph_create(f->masses, &plan->mesh.springs, &plan->graph, err);
   if (status != MSR_OK) return status;

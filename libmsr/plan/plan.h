@@ -107,11 +107,13 @@ static inline bool msri_plan_bounces(const msr_plan *plan) {
 
 /* Does what met something need the acceleration at the end of the step? Implicit methods, whose
  * steps may be too long for what that would say, do without; so do methods that leave contacts to
- * the library, where places are kept, and masses that others may push away. */
+ * the library, where places are kept, masses that others may push away, and steps so long that what
+ * the modified energy leaves out is most of it. */
 static inline bool msri_plan_settles(const msr_plan *plan) {
   const msr_integrator *integrator = plan->figures.integrator;
   if (!plan->contact.drift || integrator->implicit) return false;
-  return plan->contact.meet || (integrator->bounces && !plan->discs);
+  if (plan->contact.meet) return true;
+  return integrator->bounces && !plan->discs && plan->figures.h <= plan->figures.safe_step;
 }
 
 /* The time after so many iterations and substeps: made of whole numbers, never summed, so that

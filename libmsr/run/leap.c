@@ -16,7 +16,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CAREFUL = 4 }; /* substeps of a step with care, at most */
+enum { CAREFUL = 4, MOST_HALVES = 10 }; /* substeps of a step with care, at most; see try_halves */
 
 /* A leap under way is a number of substeps. */
 typedef struct course {
@@ -40,27 +40,49 @@ static void restore(msr_state *state, const double *kept) {
   memcpy(state->v, kept + n, n * sizeof *kept);
 }
 
-/* One leap. MSR_EUNSTABLE if it can't be made, and the state is as before. */
-static msr_status try(course *c) {
+static msr_interval interval_of(const course *c) {
+  const msr_plan_figures *f = &c->state->plan->figures;
+  const uint64_t end = c->state->substep + c->length;
+  return (msr_interval){msri_state_time(c->state), (double)c->length * f->h,
+                        msri_plan_time(f, c->state->iteration, end)};
+}
+
+/* One leap, which stops nothing further than `reach` before a support. MSR_EUNSTABLE if it can't be
+ * made, and the state is as before. */
+static msr_status try(course *c, const msr_interval *interval, double reach) {
   msr_state *state = c->state;
-  const msr_plan_figures *f = &state->plan->figures;
   const msr_integrator *method = &msr_integrator_energy_momentum;
-  const msr_interval interval = {msri_state_time(state), (double)c->length * f->h,
-                                 msri_plan_time(f, state->iteration, state->substep + c->length)};
   double *before = state->leap.before;
   keep(state, before);
-  state->effort = (msri_effort){.limited = true,
-                                .limit = c->credit,
-                                .reach = c->length > 1 ? c->plan->reach : (double)INFINITY};
+  state->effort = (msri_effort){.limited = true, .limit = c->credit, .reach = reach};
   msr_workspace work = {.vector = state->leap.vector};
   const msr_status status =
-      method->step(method, c->system, &interval, state->q, state->v, &work, NULL);
+      method->step(method, c->system, interval, state->q, state->v, &work, NULL);
   c->credit -= state->effort.spent;
   state->leap.spent += state->effort.spent;
   if (status == MSR_OK) return MSR_OK;
   restore(state, before);
   if (status == MSR_EUNSTABLE) state->failed = NULL;
   return status;
+}
+
+/* With care: a step that can't be made, in halves that can; the plan's own method takes what is
+ * left after so many. */
+static msr_status try_halves(course *c, const msr_interval *whole, int times) {
+  const double half = whole->h / 2, middle = whole->t + half;
+  const msr_status status = try(c, whole, (double)INFINITY);
+  if (status != MSR_EUNSTABLE) return status;
+  c->state->fresh = false;
+  if (times == 0) return msri_step_once(c->state, c->system, whole, NULL);
+  const msr_status first = try_halves(c, &(msr_interval){whole->t, half, middle}, times - 1);
+  if (first != MSR_OK) return first;
+  return try_halves(c, &(msr_interval){middle, half, whole->end}, times - 1);
+}
+
+static msr_status try_any(course *c) {
+  const msr_interval interval = interval_of(c);
+  if (c->state->care.on && c->length == 1) return try_halves(c, &interval, MOST_HALVES);
+  return try(c, &interval, c->plan->reach);
 }
 
 /* After a leap. */
@@ -118,14 +140,14 @@ msr_status msri_leap(msr_state *state, const msr_system *system, const msri_poll
   const double credit = plan->share * plan->substep * (double)leg;
   course c = {state, system, plan, leg, state->care.on ? (double)INFINITY : credit};
   msr_status status = MSR_OK;
-  if (vibrates(state, (double)leg * state->plan->figures.h)) return MSR_OK;
+  if (!state->care.on && vibrates(state, (double)leg * state->plan->figures.h)) return MSR_OK;
   keep(state, state->leap.start);
   while (state->substep < end && status == MSR_OK) {
     c.length = c.length < end - state->substep ? c.length : end - state->substep;
     if (!pays(&c)) return MSR_OK;
     status = poll(&c, watch);
     if (status != MSR_OK) break;
-    status = try(&c);
+    status = try_any(&c);
     if (status == MSR_OK) {
       status = land(&c);
     } else if (status == MSR_EUNSTABLE) {
