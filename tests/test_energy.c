@@ -382,15 +382,17 @@ static void bounce_block(double dt, double *gain, double *loss) {
   close_world(w);
 }
 
-/* An impact costs a stiff block a little energy, of an order between 1 and 2 of the step: measured
- * 14 %, 0.42 % and 0.06 % in 5 s at 0.005, 0.001 and 0.0005 s. It never gives any. */
+/* Above the safe step, 0.0024 s, an impact costs a stiff block energy, 14 % in 5 s; below it, where
+ * it keeps what Verlet keeps, little of either sign: measured +0.11 and -0.25 % at 0.001 s, of
+ * order 2. */
 static void a_bouncing_block_is_not_heated(void **state) {
   (void)state;
-  const double dt[] = {0.005, 0.001, 0.0005}, most[] = {0.2, 0.008, 0.003};
+  const double dt[] = {0.005, 0.001, 0.0005};
+  const double gained[] = {1e-3, 0.002, 0.001}, lost[] = {0.2, 0.004, 0.001};
   for (size_t n = 0; n < LENGTH(dt); n++) {
     double gain, loss;
     bounce_block(dt[n], &gain, &loss);
-    if (!(gain < 1e-3 && loss < most[n])) fail_msg("DT %g: +%g, -%g", dt[n], gain, loss);
+    if (!(gain < gained[n] && loss < lost[n])) fail_msg("DT %g: +%g, -%g", dt[n], gain, loss);
   }
 }
 

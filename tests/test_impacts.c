@@ -540,10 +540,11 @@ static void a_corner_sends_back(void **unused) {
 }
 
 /* Two masses, one on the other's spring, without restitution: what presses on the floor does so by
- * the same rule, located or kept, to the last bit. */
+ * the same rule, located or kept, but for rounding, which a second of swings makes a thousand times
+ * larger. */
 static void what_presses_is_kept(void **unused) {
   (void)unused;
-  uint64_t hash[LENGTH(rules)];
+  double z[LENGTH(rules)][8];
   for (size_t rule = 0; rule < LENGTH(rules); rule++) {
     msr_scene *scene = scene_of("..\n..\n..\n..\n##\n", &(msr_conf){0.0025, 50, 1, 1, 1, 1}, NULL);
     must(msr_scene_set_contact(scene, 0, 0, &why));
@@ -553,10 +554,12 @@ static void what_presses_is_kept(void **unused) {
     world w = open_world_with(scene, &(msr_plan_options){.substeps = 1, .impacts = rules[rule]});
     advance(&w, 1000);
     assert_true(msr_state_contacts(w.state) >= 1000);
-    hash[rule] = msr_state_hash(w.state);
+    read_world(&w, z[rule]);
     close_world(w);
   }
-  assert_true(hash[0] == hash[1]);
+  for (size_t k = 0; k < 8; k++)
+    if (!(fabs(z[0][k] - z[1][k]) <= 1e3 * DBL_EPSILON * (1 + fabs(z[0][k]))))
+      fail_msg("%.17g %.17g", z[0][k], z[1][k]);
 }
 
 /* A method that moves by a whole step or not at all: no impact of its can be found by steps that

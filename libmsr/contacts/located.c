@@ -18,6 +18,7 @@ enum { X, Y, MOST_IMPACTS = 8 };
  * velocity isn't that of v. */
 typedef struct flight {
   double x[MSRI_AXES], rate[MSRI_AXES], w[MSRI_AXES], a[MSRI_AXES], owed[MSRI_AXES], left;
+  bool follows; /* owed is paid */
 } flight;
 
 /* ---- When a support is met, and what follows */
@@ -60,15 +61,21 @@ static void end_of(const flight *f, double *to) {
     to[d] = f->x[d] + f->left * (f->rate[d] + f->left * f->a[d] / 2);
 }
 
-/* For the rest of the time the old rule: reflected in the middle of it, or at rest. */
-static unsigned stay(const msri_supports *s, const double *to, flight *f) {
+/* For the rest of the time the old rule: reflected in the middle of it, or at rest. `owed`: by half
+ * of all the time. */
+static unsigned stay(const msri_supports *s, const double *to, double owed, flight *f) {
   const double half = f->left / 2;
   msri_leg leg = {.h = f->left,
                   .a = {f->a[X], f->a[Y]},
                   .x = {f->x[X], f->x[Y]},
-                  .v = {f->w[X] + half * f->a[X], f->w[Y] + half * f->a[Y]}};
+                  .v = {f->w[X] + half * f->a[X], f->w[Y] + half * f->a[Y]},
+                  .follows = f->follows};
   const unsigned collisions = msri_supports_keep(s, to, &leg);
-  for (int d = X; d < MSRI_AXES; d++) f->x[d] = leg.x[d], f->w[d] = leg.v[d] + half * f->a[d];
+  for (int d = X; d < MSRI_AXES; d++) {
+    f->x[d] = leg.x[d];
+    f->w[d] = leg.v[d] + (half + leg.owed[d]) * f->a[d];
+    f->owed[d] = owed + leg.owed[d];
+  }
   return collisions;
 }
 
@@ -79,10 +86,7 @@ static unsigned fly(const msri_supports *s, const double *end, flight *f) {
   double to[] = {end[X], end[Y]};
   unsigned n = 0;
   for (msri_face met; msri_supports_face(s, f->x, to, &met); n++) {
-    if (n == MOST_IMPACTS || !strike_face(s, &met, f)) {
-      f->owed[X] = f->owed[Y] = half;
-      return n + stay(s, to, f);
-    }
+    if (n == MOST_IMPACTS || !strike_face(s, &met, f)) return n + stay(s, to, half, f);
     end_of(f, to);
   }
   for (int d = X; d < MSRI_AXES; d++) {
@@ -117,7 +121,8 @@ static uint64_t drift(const void *self, size_t n, double h, const double *u, con
                 .rate = {u[i] - ai * h / 2, u[j] - aj * h / 2},
                 .w = {v[i] - ai * h / 2, v[j] - aj * h / 2},
                 .a = {ai, aj},
-                .left = h};
+                .left = h,
+                .follows = owed != NULL};
     collisions += fly(self, to, &f);
     q[i] = f.x[X], q[j] = f.x[Y];
     v[i] = f.w[X] - (owed ? f.owed[X] : h / 2) * ai;
@@ -133,7 +138,7 @@ static uint64_t drift(const void *self, size_t n, double h, const double *u, con
 static flight flight_of(double h, const double *q0, const double *v0, const double *q,
                         const double *v, size_t i, size_t j, bool follows) {
   const size_t at[] = {i, j};
-  flight f = {.left = h};
+  flight f = {.left = h, .follows = follows};
   for (int d = X; d < MSRI_AXES; d++) {
     const size_t k = at[d];
     const double u = (q[k] - q0[k]) / h;
