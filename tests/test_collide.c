@@ -545,17 +545,19 @@ static void the_search_finds_every_pair(void **unused) {
   uint64_t dice = 17;
   const double k1 = 1;
   for (int trial = 0; trial < 300; trial++) {
-    const size_t n = 2 + random_below(&dice, 70);
+    const size_t n = 2 + random_below(&dice, 150);
     const msr_run_of_springs run = {0, n - 1, 1, &k1, &k1, 0};
     finder f = finder_of(n, &(msr_springs){.n = n - 1, .n_runs = 1, .run = &run});
     f.near.ties = &f.ties;
-    const double side = uniform(&dice, 1, 40), speed = pow(10, uniform(&dice, -2, 6));
+    const double side = uniform(&dice, sqrt((double)n) / 3, 40),
+                 speed = pow(10, uniform(&dice, -2, 6));
     const double common = random_below(&dice, 2) ? speed * 30 : 0;
     for (size_t i = 0; i < 2 * n; i++) {
+      const bool rests = i % n % 4 > 0;
       f.q0[i] = uniform(&dice, -side, side);
       if (random_below(&dice, 5) == 0) f.q0[i] = floor(f.q0[i]);
       if (random_below(&dice, 60) == 0) f.q0[i] *= pow(10, uniform(&dice, 0, 300));
-      f.q[i] = f.q0[i] + common + (random_below(&dice, 3) ? uniform(&dice, -speed, speed) : 0);
+      f.q[i] = f.q0[i] + common + (rests ? 0 : uniform(&dice, -speed, speed));
     }
     msri_near_list_at(&f.near, f.q0, 0.2);
     expect_all(&f, false, 1.4);

@@ -238,7 +238,6 @@ uint64_t msri_discs_drift(const msri_discs *discs, const msri_contact *supports,
   else
     for (size_t i = 0; i < 2 * d->n; i++) q[i] += h * u[i];
   d->q0 = room, d->q = q, d->v = v;
-  d->kick = a, d->half = h / 2;
   d->owed = supports->drift ? owed : NULL;
   return met + collide(&c);
 }
@@ -253,7 +252,7 @@ uint64_t msri_discs_bounce(const msri_discs *discs, const msri_contact *supports
   for (size_t i = 0; i < 2 * d->n; i++) kick[i] = v[i] - v0[i];
   if (supports->bounce) met = supports->bounce(supports->self, d->n, h, q0, v0, q, v, owed);
   d->q0 = q0, d->q = q, d->v = v;
-  d->kick = kick, d->half = d->behind = 0.5;
+  d->kick = kick, d->behind = 0.5;
   d->owed = supports->bounce ? owed : NULL;
   return met + collide(&c);
 }

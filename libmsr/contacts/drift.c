@@ -79,21 +79,6 @@ static void obstruct(msri_drift *d, size_t i) {
 
 /* ---- A pair */
 
-static double kick_along(const msri_drift *d, size_t i, msri_vec n) {
-  return d->kick ? d->half * (d->kick[i] * n.x + d->kick[d->n + i] * n.y) : 0;
-}
-
-/* The restitution of two that meet along n at a speed. They rest on each other if, with what e
- * leaves them of it, half a kick brings them back: then they leave with what that takes away. */
-static double restitution_of(const msri_drift *d, const msri_disc_pair *p, msri_vec n,
-                             double speed) {
-  const double e = d->restitution;
-  if (e == 1 || !(speed > 0)) return e;
-  const double ki = kick_along(d, p->i, n), kj = kick_along(d, p->j, n);
-  if (e * speed > fabs(ki) + fabs(kj)) return e;
-  return msri_min(1, msri_max(0, ki - kj) / speed);
-}
-
 /* Would it go further than it may? */
 static bool is_too_far(const msri_drift *d, size_t i, msri_vec n, double s) {
   const msri_vec way = way_of(d, i);
@@ -108,11 +93,12 @@ static void push_apart(msri_drift *d, const msri_disc_pair *p, msri_vec n, doubl
   const double mi = msri_drift_mass(d, i), mj = msri_drift_mass(d, j);
   const double of_i = -(mj / (mi + mj)), of_j = mi / (mi + mj);
   while (s > 0 && (is_too_far(d, i, n, s * of_i) || is_too_far(d, j, n, s * of_j)))
-    s = s > 1e-12 ? s / 2 : 0;
+    s = s > 1e-12 * d->diameter ? s / 2 : 0;
+  if (s == 0) return;
   const msri_vec vi = velocity(d, i), vj = velocity(d, j);
   const double speed = (vi.x - vj.x) * n.x + (vi.y - vj.y) * n.y, m = mj * of_j;
   const work w = {-m * speed * s, m * s * s};
-  const double f = s * allowed(d, &w, (1 + restitution_of(d, p, n, speed)) / d->h);
+  const double f = s * allowed(d, &w, (1 + d->restitution) / d->h);
   const msri_vec di = way_of(d, i), dj = way_of(d, j);
   redirect(d, i, (msri_vec){di.x + s * of_i * n.x, di.y + s * of_i * n.y});
   redirect(d, j, (msri_vec){dj.x + s * of_j * n.x, dj.y + s * of_j * n.y});

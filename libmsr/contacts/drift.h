@@ -13,10 +13,11 @@ typedef struct msri_drift {
   double diameter, restitution;
   const msri_contact *supports;
   double h;
-  const double *q0;       /* [2n]: places before */
-  double *q, *v;          /* [2n]: places after, so far */
-  const double *kick;     /* [2n]: `half` of it is half a kick by the acceleration; NULL: none */
-  double half, behind;    /* what v is ahead of the velocity in the middle of the step, in kicks */
+  const double *q0;   /* [2n]: places before */
+  double *q, *v;      /* [2n]: places after, so far */
+  const double *kick; /* [2n]: `behind` of it is what v is ahead of the velocity in the middle of
+                       * the step; NULL: nothing */
+  double behind;
   double *owed;           /* [2n] as in contact.h; may be NULL */
   double apart;           /* by which discs that overlap may part [px] */
   double most;            /* how far one may be pushed [px] */
