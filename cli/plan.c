@@ -59,6 +59,10 @@ static void print_step(const msr_plan_figures *f) {
     label("long steps");
     printf("%s, implicit, wherever cheaper than the substeps that they span\n", f->leaps->name);
   }
+  if (f->care) {
+    label("energy");
+    printf("watched; %s takes over should any come from nowhere\n", f->care->name);
+  }
   if (f->integrator->adaptive) {
     label("tolerance");
     printf("%.3g px and px/s, and %.3g of the largest, a step\n", f->atol, f->rtol);

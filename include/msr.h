@@ -580,6 +580,8 @@ typedef struct msr_plan_figures {
   size_t supports;      /* black pixels */
   const msr_integrator *integrator;
   const msr_integrator *leaps; /* takes long steps where they cost less than substeps; NULL: none */
+  const msr_integrator *care;  /* takes over, from where the energy was sound, once 2 % of what the
+                                * scene had to give came from nowhere; NULL: none */
   msr_impacts impacts;
   uint64_t iterations, images, substeps;
   double atol, rtol;  /* of adaptive methods */

@@ -215,6 +215,7 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan
   status = call_for_effects(plan, scene, &start, err);
   plan->conserves = conserves(plan, scene);
   plan->cares = automatic && msri_plan_can_leap(plan);
+  if (plan->cares) plan->figures.care = &msr_integrator_energy_momentum;
   plan->careful = plan->cares && msri_plan_crushes(plan, &start);
   if (status == MSR_OK) status = msri_plan_choose_step(plan, &start, substeps, err);
   if (status == MSR_OK && automatic) status = msri_plan_choose_leaps(plan, err);
