@@ -33,7 +33,7 @@ share() {
   callgrind_annotate --inclusive=yes --threshold=100 out 2> /dev/null | tr -d ',' |
     awk -v name="$name" '
       /PROGRAM TOTALS/ { total = $1 }
-      !/=>/ && /:(msr_state_check|msri_sum_squares|msri_guard_follow) / { guard += $1 }
+      !/=>/ && /:(msr_state_check|msri_sum_squares|msri_guard_follow|msri_care_watch) / { guard += $1 }
       END { printf "%-28s %5.2f %%\n", name, 100 * guard / total }'
 }
 
