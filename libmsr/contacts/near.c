@@ -2,7 +2,8 @@
  * Simulation of Liquids, 5.3: cells and a list with a skin).
  *
  * Cells are hashed into as many buckets as there are masses, so that one mass far away costs no
- * memory: (cx + row cy) mod 2^b keeps neighbouring cells side by side.
+ * memory: (cx + row cy) mod 2^b keeps neighbouring cells side by side, and tells nine that are
+ * around one apart. What else is in their buckets is too far away.
  *
  * Fast ways are sorted into frames: those whose way is near that of one of them are at rest beside
  * it, and are neighbours by the grid; the ways of the others are walked through that grid; then
@@ -146,20 +147,11 @@ static three three_from(const msri_near *near, cell first) {
   return (three){near->bucket[b], near->bucket[b + 3 - over], near->bucket[0], near->bucket[over]};
 }
 
-/* Is j of a cell in the three, and not only of the same bucket? */
-static bool is_of(const msri_near *near, const search *s, size_t j, cell first) {
-  const cell c = cell_at(s->q0, near->n, j, s->size);
-  return c.y == first.y && c.x >= first.x && c.x <= first.x + 2;
-}
-
-static void look_among(msri_near *near, const search *s, size_t i, cell first, uint32_t begin,
-                       uint32_t end) {
+static void look_among(msri_near *near, const search *s, size_t i, uint32_t begin, uint32_t end) {
   const double *x = s->q0, *y = x + near->n, reach2 = s->reach * s->reach;
   for (uint32_t k = begin; k < end; k++) {
     const size_t j = near->sorted[k];
-    if (j > i && squared(x[j] - x[i], y[j] - y[i]) <= reach2 && is_of(near, s, j, first) &&
-        wanted(s, i, j))
-      append(near, i, j);
+    if (j > i && squared(x[j] - x[i], y[j] - y[i]) <= reach2 && wanted(s, i, j)) append(near, i, j);
   }
 }
 
@@ -169,8 +161,8 @@ static void look_around(msri_near *near, const search *s, size_t i) {
   for (int64_t cy = at.y - 1; cy <= at.y + 1; cy++) {
     const cell first = {at.x - 1, cy};
     const three t = three_from(near, first);
-    look_among(near, s, i, first, t.begin, t.end);
-    look_among(near, s, i, first, t.begin_again, t.end_again);
+    look_among(near, s, i, t.begin, t.end);
+    look_among(near, s, i, t.begin_again, t.end_again);
   }
 }
 
@@ -267,10 +259,9 @@ static void meet_on_way(msri_near *near, const search *s, const walk *w, size_t 
   if (i < j ? wanted(s, i, j) : wanted(s, j, i)) append(near, i, j);
 }
 
-static void meet_among(msri_near *near, const search *s, const walk *w, double step, cell first,
-                       uint32_t begin, uint32_t end) {
-  for (uint32_t k = begin; k < end; k++)
-    if (is_of(near, s, near->sorted[k], first)) meet_on_way(near, s, w, near->sorted[k], step);
+static void meet_among(msri_near *near, const search *s, const walk *w, double step, uint32_t begin,
+                       uint32_t end) {
+  for (uint32_t k = begin; k < end; k++) meet_on_way(near, s, w, near->sorted[k], step);
 }
 
 /* The nine cells around a step of the walk. */
@@ -281,8 +272,8 @@ static void look_from(msri_near *near, const search *s, const walk *w, double st
   for (int64_t cy = c.y - 1; cy <= c.y + 1; cy++) {
     const cell first = {c.x - 1, cy};
     const three t3 = three_from(near, first);
-    meet_among(near, s, w, step, first, t3.begin, t3.end);
-    meet_among(near, s, w, step, first, t3.begin_again, t3.end_again);
+    meet_among(near, s, w, step, t3.begin, t3.end);
+    meet_among(near, s, w, step, t3.begin_again, t3.end_again);
   }
 }
 
