@@ -9,6 +9,7 @@
 typedef struct msri_guard {
   bool begun;
   double energy;         /* kinetic and spring energy at the start, and of a first kick */
+  double slack;          /* how much of that there needn't be: the kick, and rounding */
   double gravity, outer; /* potentials of gravity and of the other outer forces at the start */
   double lost;           /* the most that these have lost */
   double work;           /* bound of what driving forces have done since */
