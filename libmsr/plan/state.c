@@ -113,8 +113,10 @@ msr_status msri_state_make_room(msr_state *state, msr_error *err) {
   const size_t n = plan->figures.masses, vector = 2 * n * sizeof(double);
   const size_t vectors = msr_integrator_energy_momentum.vectors;
   if (plan->graph || state->care.memory) return MSR_OK;
-  msr_status status = msri_graph_create(n, &plan->mesh.springs, &state->care.graph, err);
-  if (status != MSR_OK) return status;
+  if (!state->care.graph) { /* else what came after it has failed before */
+    const msr_status status = msri_graph_create(n, &plan->mesh.springs, &state->care.graph, err);
+    if (status != MSR_OK) return status;
+  }
   size_t end = 0;
   const size_t leap = reserve(&end, 4 * vector), work = reserve(&end, vectors * vector);
   const size_t between = reserve(&end, 2 * vector);
