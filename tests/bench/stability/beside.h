@@ -61,7 +61,7 @@ typedef struct solver {
   void (*read)(void *self, double *x, double *y, double *vx, double *vy);
 } solver;
 
-/* Steps per DT that libmsr takes. */
+/* Steps per DT of libmsr's plan: of Verlet, before any care or leap. */
 uint64_t library_substeps(const problem *p);
 
 extern const solver solver_library, solver_assignment, solver_gsl, solver_chipmunk, solver_box2d;

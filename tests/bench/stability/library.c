@@ -46,6 +46,7 @@ static msr_scene *paint(const problem *p) {
 static msr_scene *scene_of(const problem *p) {
   msr_scene *scene = paint(p);
   must(msr_scene_set_contact(scene, p->restitution, 0, &why));
+  must(msr_scene_set_collisions(scene, p->diameter, &why));
   for (size_t i = 0; !p->drawn && i < p->n; i++) {
     const msr_mass mass = {p->x[i], p->y[i], p->vx[i], p->vy[i], p->m[i], {255, 0, 0}};
     must(msr_scene_add_mass(scene, &mass, NULL, &why));
@@ -97,9 +98,4 @@ static void read_library(void *self, double *x, double *y, double *vx, double *v
   for (size_t a = 0; a < 4; a++) memcpy(to[a], from[a], r->n * sizeof *x);
 }
 
-/* Where a problem has a diameter, scene_of would ask for collisions between masses. */
-static const char *decline_library(const problem *p) {
-  return p->diameter > 0 ? "it has no collisions between masses yet" : NULL;
-}
-
-const solver solver_library = {decline_library, open_library, advance_library, read_library};
+const solver solver_library = {NULL, open_library, advance_library, read_library};

@@ -1,5 +1,5 @@
-/* stability.c [CASE ...] - hard cases put to libmsr, to the assignment's own algorithm and to other
- * libraries, side by side. */
+/* stability.c [CASE ...] [COLUMN ...] - hard cases put to libmsr, to the assignment's own algorithm
+ * and to other libraries, side by side; to the columns named, or to all. */
 #include "cases.h"
 #include "watch.h"
 
@@ -22,14 +22,14 @@ static const double kept = 0.1;
 static const struct column {
   const char *name, *settings;
   const solver *solver;
-  bool fine; /* takes as many steps as libmsr does */
+  bool fine; /* takes as many steps as libmsr's plan */
 } columns[] = {
-    {"libmsr", "no option: Verlet, substeps by the plan", &solver_library, false},
+    {"libmsr", "no option but those that describe the case", &solver_library, false},
     {"assignment", "symplectic Euler, one step per DT", &solver_assignment, false},
-    {"assignment+", "the same with as many steps as libmsr takes", &solver_assignment, true},
+    {"assignment+", "the same with as many steps as libmsr's plan", &solver_assignment, true},
     {"GSL rkf45", "odeiv2 driver, absolute tolerance 1e-6", &solver_gsl, false},
     {"Chipmunk2D", "a pixel is a unit; one step per DT, 10 iterations", &solver_chipmunk, false},
-    {"Chipmunk2D+", "the same with as many steps as libmsr takes", &solver_chipmunk, true},
+    {"Chipmunk2D+", "the same with as many steps as libmsr's plan", &solver_chipmunk, true},
     {"Box2D", "a pixel is 0.1 m; one step per DT, 8 and 3 iterations", &solver_box2d, false},
 };
 enum { COLUMNS = sizeof columns / sizeof *columns, MOST_CASES = 16 };
@@ -95,21 +95,45 @@ static void print_row(const problem *p, const char *name, const sight *s) {
   if (s->how == STOPPED) printf("%12s%.*s\n", "", (int)strcspn(s->text, ":"), s->text);
 }
 
-static void print_head(const problem *p) {
-  printf("\n== %s: %s; %zu masses\n", p->name, p->text, p->n);
+static void print_head(const problem *p, uint64_t substeps) {
+  printf("\n== %s: %s; %zu masses; +: %ju steps per DT\n", p->name, p->text, p->n,
+         (uintmax_t)substeps);
   printf("%-11s %10s %10s %8s %6s %6s %9s %9s %7s\n", "", "growth", "loss", "depth", "in", "out",
          "until s", "speed", "CPU s");
 }
 
-static void put(const hard_case *from, char (*verdicts)[80]) {
+/* Are none of these names given, or this one? */
+static bool is_asked(char **args, const char *name, bool (*is_name)(const char *)) {
+  bool none = true;
+  for (; *args; args++) {
+    if (strcmp(*args, name) == 0) return true;
+    none = none && !is_name(*args);
+  }
+  return none;
+}
+
+static bool is_case(const char *name) {
+  size_t c = 0;
+  while (hard_cases[c].name && strcmp(hard_cases[c].name, name) != 0) c++;
+  return hard_cases[c].name;
+}
+
+static bool is_column(const char *name) {
+  size_t i = 0;
+  while (i < COLUMNS && strcmp(columns[i].name, name) != 0) i++;
+  return i < COLUMNS;
+}
+
+static void put(const hard_case *from, char **args, char (*verdicts)[80]) {
   problem p;
   problem_create(&p, from);
-  print_head(&p);
   problem fine = p;
   const uint64_t substeps = library_substeps(&p);
+  print_head(&p, substeps);
   fine.dt /= (double)substeps;
   fine.iterations *= substeps;
   for (size_t i = 0; i < COLUMNS; i++) {
+    if (!is_asked(args, columns[i].name, is_column)) continue;
     const sight seen = watch(columns[i].solver, columns[i].fine ? &fine : &p, limit);
     print_row(&p, columns[i].name, &seen);
     judge(&p, &seen, verdicts[i], sizeof verdicts[i]);
@@ -117,19 +141,13 @@ static void put(const hard_case *from, char (*verdicts)[80]) {
   problem_free(&p);
 }
 
-static bool is_asked(int argc, char **argv, const char *name) {
-  bool asked = argc == 1;
-  for (int i = 1; i < argc; i++) asked |= strcmp(argv[i], name) == 0;
-  return asked;
-}
-
 /* The first fault of each. */
-static void print_summary(char (*verdicts)[COLUMNS][80]) {
+static void print_summary(char **args, char (*verdicts)[COLUMNS][80]) {
   printf("\n%-12s", "In short");
   for (size_t i = 0; i < COLUMNS; i++) printf(" %-13s", columns[i].name);
   printf("\n");
   for (size_t c = 0; hard_cases[c].name; c++) {
-    if (!verdicts[c][0][0]) continue;
+    if (!is_asked(args, hard_cases[c].name, is_case)) continue;
     printf("%-12s", hard_cases[c].name);
     for (size_t i = 0; i < COLUMNS; i++)
       printf(" %-13.*s", (int)strcspn(verdicts[c][i], ","), verdicts[c][i]);
@@ -138,10 +156,13 @@ static void print_summary(char (*verdicts)[COLUMNS][80]) {
 }
 
 int main(int argc, char **argv) {
+  for (int i = 1; i < argc; i++)
+    if (!is_case(argv[i]) && !is_column(argv[i]))
+      bench_fail("no case or column is called %s", argv[i]);
   static char verdicts[MOST_CASES][COLUMNS][80];
   setvbuf(stdout, NULL, _IOLBF, 0);
   print_machine();
   for (size_t c = 0; hard_cases[c].name; c++)
-    if (is_asked(argc, argv, hard_cases[c].name)) put(&hard_cases[c], verdicts[c]);
-  print_summary(verdicts);
+    if (is_asked(argv + 1, hard_cases[c].name, is_case)) put(&hard_cases[c], argv + 1, verdicts[c]);
+  print_summary(argv + 1, verdicts);
 }
