@@ -84,10 +84,11 @@ static void two_keep_momentum_and_spin(void **unused) {
   for (int trial = 0; trial < 2000; trial++) {
     const double e = trial % 2 ? 1 : 0.6;
     msr_scene *scene = discs(0.01, 1, e);
-    for (int i = 0; i < 2; i++)
-      add_mass(scene, 1.5 * i + uniform(&dice, -0.1, 0.1), uniform(&dice, -0.4, 0.4),
-               (i ? -1 : 1) * uniform(&dice, 0, 10), uniform(&dice, -5, 5),
-               uniform(&dice, 0.1, 10));
+    for (int i = 0; i < 2; i++) { // one draw after the other: arguments have no order
+      const double x = 1.5 * i + uniform(&dice, -0.1, 0.1), y = uniform(&dice, -0.4, 0.4);
+      const double vx = (i ? -1 : 1) * uniform(&dice, 0, 10), vy = uniform(&dice, -5, 5);
+      add_mass(scene, x, y, vx, vy, uniform(&dice, 0.1, 10));
+    }
     const world w = open_world(scene, NULL, 1);
     const moment before = moment_of(&w);
     advance(&w, 40);
@@ -95,8 +96,9 @@ static void two_keep_momentum_and_spin(void **unused) {
     const double most = 400 * DBL_EPSILON * before.size; // each of 40 steps rounds some sums
     assert_true(fabs(after.px - before.px) <= most && fabs(after.py - before.py) <= most);
     assert_true(fabs(after.spin - before.spin) <= most);
-    assert_true(after.kinetic <= before.kinetic * (1 + 1e-14));
-    if (e == 1) assert_true(after.kinetic >= before.kinetic * (1 - 1e-14));
+    // a collision rounds each speed a few times, and the lighter one's may be 100 times the other's
+    assert_true(after.kinetic <= before.kinetic * (1 + 1000 * DBL_EPSILON));
+    if (e == 1) assert_true(after.kinetic >= before.kinetic * (1 - 1000 * DBL_EPSILON));
     met += msr_state_contacts(w.state) > 0;
     close_world(w);
   }
