@@ -4,9 +4,9 @@
 #include "stability/suite.h"
 
 static suite all_cases(void) {
-  static void (*const points[])(suite *) = {add_stiff,   add_steps,   add_masses, add_shapes,
-                                            add_impacts, add_effects, add_rest,   add_numbers,
-                                            add_limits,  add_ages};
+  static void (*const points[])(suite *) = {add_stiff,   add_steps,   add_masses,     add_shapes,
+                                            add_impacts, add_falls,   add_collisions, add_effects,
+                                            add_rest,    add_numbers, add_limits,     add_ages};
   suite s = {0};
   for (size_t p = 0; p < LENGTH(points); p++) points[p](&s);
   return s;

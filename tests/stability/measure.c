@@ -2,8 +2,8 @@
  *
  * Energies are over what the scene had to give: kinetic and spring energy at the start, what the
  * other potentials have lost at most, and one kick of 2 h g, which a mass that rests on a support
- * swings by. Where wind blows, the growth is what the library's guard saw; its own bound of the
- * wind's work is tested in test_guard.c. */
+ * swings by. What a state goes back from is no part of its run. Where wind blows, the growth is
+ * what the library's guard saw; its own bound of the wind's work is tested in test_guard.c. */
 #include "walls.h"
 
 #include <time.h>
@@ -41,7 +41,6 @@ static void begin(trial *t) {
   const double rounding = DBL_EPSILON * (double)s.n * fabs(e.total);
   t->given = e.kinetic + (t->row->from_rest ? 0 : e.spring) + kick + rounding;
   t->o.substeps = f.substeps;
-  msri_format(t->o.integrator, sizeof t->o.integrator, "%s", f.integrator->name);
 }
 
 static uint64_t count_not_finite(const msr_view *s) {
@@ -74,13 +73,24 @@ static void look(trial *t, bool late) {
   if (change < 0) t->o.loss = fmax(t->o.loss, -change);
 }
 
+/* What did it go by? Told at the end. */
+static void name_methods(trial *t) {
+  const msr_work work = msr_state_work(t->w.state);
+  msri_format(t->o.integrator, sizeof t->o.integrator, "%s%s%s",
+              msr_plan_describe(t->w.plan).integrator->name,
+              msr_plan_describe(t->w.plan).leaps && work.leaps > 0 ? "+leaps" : "",
+              work.careful == UINT64_MAX ? "" : "+care");
+}
+
 static msr_status go(trial *t) {
   enum { LOOKS = 200 };
   const uint64_t all = t->brief ? t->row->brief : t->row->full;
   const uint64_t piece = all < LOOKS ? 1 : all / LOOKS;
   msr_status status = MSR_OK;
   for (uint64_t done = 0; done < all && status == MSR_OK; done += piece) {
+    const uint64_t careful = msr_state_work(t->w.state).careful;
     status = msr_state_step(t->w.state, piece < all - done ? piece : all - done, &why);
+    if (msr_state_work(t->w.state).careful != careful) t->o.growth = t->o.loss = 0;
     if (status == MSR_OK) status = msr_state_check(t->w.state, &why);
     look(t, 2 * done >= all);
   }
@@ -141,6 +151,7 @@ outcome run_case(const hard_case *row, bool brief) {
     begin(&t);
     status = go(&t);
   }
+  if (t.w.state) name_methods(&t);
   judge(&t, status);
   close_world(t.w);
   forget_walls(&t.walls);

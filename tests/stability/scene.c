@@ -85,7 +85,10 @@ msr_status make_scene(const hard_case *row, bool brief, msr_picture **picture, m
   msr_conf conf = row->conf;
   conf.iterations = conf.images = 1;
   *picture = NULL;
-  if (!row->make) *picture = row->art ? paint(row->art) : assignment(brief && !row->whole);
+  if (row->draw)
+    *picture = row->draw(row);
+  else if (!row->make)
+    *picture = row->art ? paint(row->art) : assignment(brief && !row->whole);
   if (row->make)
     *scene = row->make(row, brief);
   else if (row->place || row->vx != 0 || row->vy != 0)
@@ -94,6 +97,7 @@ msr_status make_scene(const hard_case *row, bool brief, msr_picture **picture, m
     status = msr_scene_from_picture("case", *picture, &conf, &row->scene, scene, &why);
   if (status != MSR_OK) return status;
   must(msr_scene_set_contact(*scene, 1 - row->softness, row->friction, &why));
+  if (row->diameter > 0) must(msr_scene_set_collisions(*scene, row->diameter, &why));
   add_forces(row, *scene);
   return MSR_OK;
 }
