@@ -15,14 +15,10 @@ static void count(msr_state *state, uint64_t collisions) {
   state->contacts += collisions;
 }
 
-static double end_of_step(const msr_state *state) {
-  return msri_plan_time(&state->plan->figures, state->iteration, state->substep + 1);
-}
-
 /* Pays what masses are owed after collisions. */
 static msr_status settle(msr_state *state, const double *q, double *v) {
   const size_t n = 2 * state->plan->figures.masses;
-  const double t = end_of_step(state);
+  const double t = state->end;
   const msr_status status = msri_state_accelerate(state, t, q, NULL, state->ahead);
   if (status != MSR_OK) return status;
   for (size_t i = 0; i < n; i++) v[i] += state->owed[i] * state->ahead[i];

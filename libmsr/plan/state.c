@@ -15,7 +15,7 @@ enum { ALIGNMENT = 64 };
 /* Where each array lies after the block's first aligned byte; `end` is after the last. */
 typedef struct layout {
   size_t solver, q, v, work, before, owed, ahead, middle, between, drive, discs, scratch, calls,
-      start, leap, kept, end;
+      before_leap, leap, kept, end;
 } layout;
 
 static size_t reserve(size_t *end, size_t bytes) {
@@ -45,7 +45,7 @@ static layout lay_out(const msr_plan *plan) {
   l.drive = reserve(&end, plan->followed ? vector : 0);
   l.discs = reserve(&end, plan->discs ? msri_discs_room(plan->discs) : 0);
   l.scratch = reserve(&end, plan->scratch_bytes);
-  l.start = reserve(&end, plan->leaping.method ? 4 * vector : 0);
+  l.before_leap = reserve(&end, plan->leaping.method ? 2 * vector : 0);
   l.leap = reserve(&end, plan->leaping.method ? plan->leaping.method->vectors * vector : 0);
   l.kept = reserve(&end, plan->cares ? 2 * vector : 0);
   l.calls = reserve(&end, plan->n_effects * sizeof(uint64_t));
@@ -78,9 +78,7 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .before = (void *)(arrays + l.before),
       .owed = msri_plan_settles(plan) ? (void *)(arrays + l.owed) : NULL,
       .ahead = (void *)(arrays + l.ahead),
-      .leap = {.start = (void *)(arrays + l.start),
-               .before = (void *)(arrays + l.start + 4 * plan->figures.masses * sizeof(double)),
-               .vector = (void *)(arrays + l.leap)},
+      .leap = {.before = (void *)(arrays + l.before_leap), .vector = (void *)(arrays + l.leap)},
       .care = {.kept = (void *)(arrays + l.kept)},
       .middle = (void *)(arrays + l.middle),
       .between = (void *)(arrays + l.between),
@@ -118,7 +116,7 @@ msr_status msri_state_make_room(msr_state *state, msr_error *err) {
     if (status != MSR_OK) return status;
   }
   size_t end = 0;
-  const size_t leap = reserve(&end, 4 * vector), work = reserve(&end, vectors * vector);
+  const size_t leap = reserve(&end, 2 * vector), work = reserve(&end, vectors * vector);
   const size_t between = reserve(&end, 2 * vector);
   const size_t solver = reserve(
       &end, msri_stiffness_bytes(state->care.graph, plan->mesh.springs.n_anchors, plan->m != NULL));
@@ -126,8 +124,7 @@ msr_status msri_state_make_room(msr_state *state, msr_error *err) {
   if (!state->care.memory) return MSR_ENOMEM;
   char *arrays = first_aligned(state->care.memory);
   const msr_view now = msr_state_view(state);
-  state->leap.start = (void *)(arrays + leap);
-  state->leap.before = state->leap.start + 4 * n;
+  state->leap.before = (void *)(arrays + leap);
   state->leap.vector = (void *)(arrays + work);
   state->between = (void *)(arrays + between);
   state->stiffness = msri_stiffness_place(state->care.graph, &now, arrays + solver);
@@ -160,15 +157,30 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
   to->care.begun = from->care.begun;
   to->care.on = from->care.on;
   to->care.at = from->care.at;
+  to->care.substep = from->care.substep;
   to->care.guard = from->care.guard;
   to->care.lost = from->care.lost;
   memcpy(to->q, from->q, l.end - l.q);
 }
 
+void msri_state_keep(const msr_state *state, double *kept) {
+  const size_t n = 2 * state->plan->figures.masses;
+  memcpy(kept, state->q, n * sizeof *kept);
+  memcpy(kept + n, state->v, n * sizeof *kept);
+}
+
+void msri_state_put_back(msr_state *state, const double *kept) {
+  const size_t n = 2 * state->plan->figures.masses;
+  memcpy(state->q, kept, n * sizeof *kept);
+  memcpy(state->v, kept + n, n * sizeof *kept);
+  state->fresh = false;
+  state->known.q = NULL;
+}
+
 void msri_state_touched(msr_state *state) {
   state->fresh = false;
   state->known.q = NULL;
-  state->guard.begun = state->care.begun = false;
+  state->guard.begun = state->care.begun = state->care.on = false;
   if (state->plan->discs) msri_discs_forget(state->plan->discs, state->discs);
 }
 

@@ -8,6 +8,7 @@
 /* What the guard compares with: see run/guard.c. */
 typedef struct msri_guard {
   bool begun;
+  bool stale;            /* what driving forces do where the state is isn't known */
   double energy;         /* kinetic and spring energy at the start, and of a first kick */
   double slack;          /* how much of that there needn't be: the kick, and rounding */
   double gravity, outer; /* potentials of gravity and of the other outer forces at the start */
@@ -35,16 +36,17 @@ typedef struct msri_effort {
 
 /* See run/leap.c. */
 typedef struct msri_leap_memory {
-  double *start, *before; /* [4n]: q, v where the iteration began, and before a leap */
-  double *vector;         /* of the method: [vectors][2n] */
-  uint64_t leaps, leapt;  /* so far; and substeps that they took the place of */
-  double spent;           /* on leaps and tries, in evaluations of the acceleration */
+  double *before;        /* [4n]: q, v before a leap */
+  double *vector;        /* of the method: [vectors][2n] */
+  uint64_t leaps, leapt; /* so far; and substeps that they took the place of */
+  double spent;          /* on leaps and tries, in evaluations of the acceleration */
 } msri_leap_memory;
 
 /* See run/care.c. */
 typedef struct msri_care {
   bool begun, on;
-  uint64_t at;      /* iteration: where it was switched on, or where q, v were kept last */
+  uint64_t at;      /* iteration: where it was switched on, or where q, v were kept last; */
+  uint64_t substep; /* done of the one that was under way there */
   double *kept;     /* [4n] if plan->cares: q, v there */
   msri_guard guard; /* and what it knew */
   double lost;      /* as the guard's, by looks at iterations that don't depend on who asks */
@@ -66,6 +68,7 @@ struct msr_state {
   double *owed;       /* [2n] if the plan settles: see contacts.c; else NULL */
   double *ahead;      /* [2n] likewise: the acceleration at the end of a step */
   msri_known known;
+  double end; /* of the step under way [s] */
   msri_effort effort;
   msri_care care;
   msri_leap_memory leap;    /* if plan->leaping.method */
@@ -138,6 +141,10 @@ uint64_t msri_hash_words(uint64_t hash, const void *words, size_t n);
 
 /* Memory for implicit steps of a state whose plan has none, in care->memory. MSR_ENOMEM. */
 msr_status msri_state_make_room(msr_state *state, msr_error *err);
+
+/* Copies q and v to kept [4n], and back. */
+void msri_state_keep(const msr_state *state, double *kept);
+void msri_state_put_back(msr_state *state, const double *kept);
 
 /* Tells that q or v were changed from outside. */
 void msri_state_touched(msr_state *state);

@@ -23,7 +23,7 @@ typedef struct header {
   double dt;
   uint64_t iteration, substep, contacts, frames;
   record guard, care_guard; /* what the guard knows, and knew where q, v were kept */
-  uint64_t care_begun, care_on, care_at;
+  uint64_t cares, care_begun, care_on, care_at, care_substep;
   double care_lost;
   uint64_t hash; /* of all of the header before it and of what follows */
 } header;
@@ -39,6 +39,7 @@ static record record_of(const msri_guard *g) {
 static msri_guard guard_of(const record *r) {
   return (msri_guard){.begun = r->begun != 0,
                       .energy = r->energy,
+                      .stale = true,
                       .slack = r->slack,
                       .gravity = r->gravity,
                       .outer = r->outer,
@@ -88,9 +89,11 @@ msr_status msr_state_save(const msr_state *state, const char *path, msr_error *e
               .frames = state->frames,
               .guard = record_of(&state->guard),
               .care_guard = record_of(&care->guard),
+              .cares = state->plan->cares,
               .care_begun = care->begun,
               .care_on = care->on,
               .care_at = care->at,
+              .care_substep = care->substep,
               .care_lost = care->lost};
   memcpy(h.magic, magic, sizeof magic);
   h.hash = hash_of(&h, &a);
@@ -122,6 +125,12 @@ static msr_status check(const msr_state *state, const char *path, const header *
         "%s: its iterations are %g s in %llu substeps, those of the plan %g s in %llu; "
         "load it into a state of the plan that it was saved from",
         path, h->dt, (unsigned long long)h->substeps, f->dt, (unsigned long long)f->substeps);
+  if (h->cares != state->plan->cares)
+    return msri_fail(
+        err, MSR_EINPUT,
+        "%s: the plan that it was saved from chose its integrator or substeps %s; load "
+        "it into a state of such a plan",
+        path, h->cares ? "by itself" : "as it was told");
   const arrays a = arrays_of(state);
   if (size != sizeof *h + bytes_of(&a))
     return msri_fail(err, MSR_EINPUT, "%s: %zu bytes where %zu are due; it is damaged", path, size,
@@ -149,6 +158,7 @@ static msr_status restore(msr_state *state, const char *path, const header *h,
   read->care.begun = h->care_begun != 0;
   read->care.on = h->care_on != 0;
   read->care.at = h->care_at;
+  read->care.substep = h->care_substep;
   read->care.lost = h->care_lost;
   const bool sound = hash_of(h, &a) == h->hash;
   if (sound) msr_state_copy(state, read);

@@ -9,37 +9,30 @@
  * those of Verlet: only scenes that call for them have them.
  *
  * It looks at iterations that don't depend on how a run is cut in pieces, or how many frames it
- * has, so that the bits don't either. */
+ * has, so that the bits don't either; but where the guard would end the run, it doesn't wait. */
 #include "run/care.h"
 
 #include "run/guard.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { PERIOD = 64 };
 
 static const double most = 0.02; /* of the energy that the scene had to give */
 
 static void keep(msr_state *state) {
-  const size_t n = 2 * state->plan->figures.masses;
   msri_care *care = &state->care;
-  memcpy(care->kept, state->q, n * sizeof *care->kept);
-  memcpy(care->kept + n, state->v, n * sizeof *care->kept);
+  msri_state_keep(state, care->kept);
   care->at = state->iteration;
+  care->substep = state->substep;
   care->guard = state->guard;
 }
 
 static void go_back(msr_state *state) {
-  const size_t n = 2 * state->plan->figures.masses;
   const msri_care *care = &state->care;
-  memcpy(state->q, care->kept, n * sizeof *care->kept);
-  memcpy(state->v, care->kept + n, n * sizeof *care->kept);
+  msri_state_put_back(state, care->kept);
   state->iteration = care->at;
-  state->substep = 0;
+  state->substep = care->substep;
   state->guard = care->guard;
-  state->fresh = false;
-  state->known.q = NULL;
+  state->guard.stale = true;
   state->failed = NULL;
 }
 
@@ -48,7 +41,7 @@ static msr_status take_care(msr_state *state, msr_error *err) {
   if (status != MSR_OK) return status;
   go_back(state);
   state->care.on = true;
-  return MSR_OK;
+  return msri_guard_resume(state, err);
 }
 
 msr_status msri_care_begin(msr_state *state, msr_error *err) {
@@ -56,10 +49,11 @@ msr_status msri_care_begin(msr_state *state, msr_error *err) {
   if (!state->plan->cares) return MSR_OK;
   if (care->on) return msri_state_make_room(state, err);
   if (care->begun) return MSR_OK;
-  care->begun = true;
   care->lost = 0;
   keep(state);
-  return state->plan->careful ? take_care(state, err) : MSR_OK;
+  const msr_status status = state->plan->careful ? take_care(state, err) : MSR_OK;
+  care->begun = status == MSR_OK;
+  return status;
 }
 
 msr_status msri_care_watch(msr_state *state, bool went_wrong, bool *turned, msr_error *err) {
@@ -68,8 +62,11 @@ msr_status msri_care_watch(msr_state *state, bool went_wrong, bool *turned, msr_
   if (!state->plan->cares || care->on || !care->begun) return MSR_OK;
   const bool looks = state->substep == 0 && state->iteration % PERIOD == 0;
   if (!went_wrong && !looks) return MSR_OK;
-  *turned = went_wrong || !(msri_guard_gain(state, &care->lost) <= most);
-  if (*turned) return take_care(state, err);
-  keep(state);
-  return MSR_OK;
+  if (!went_wrong && msri_guard_gain(state, &care->lost) <= most) {
+    keep(state);
+    return MSR_OK;
+  }
+  const msr_status status = take_care(state, err);
+  *turned = status == MSR_OK;
+  return status;
 }

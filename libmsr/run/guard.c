@@ -100,8 +100,21 @@ static double rounding_energy(const msr_view *s, double omega) {
   return msri_min(mass * pow(omega * rounding, 2) / 2, largest);
 }
 
+static msr_status tell(const msr_state *state, msr_status status, msr_error *err) {
+  return status == MSR_OK
+             ? MSR_OK
+             : msri_fail(err, status, "force %s: %s", state->failed->name, msr_status_text(status));
+}
+
+msr_status msri_guard_resume(msr_state *state, msr_error *err) {
+  if (!state->guard.stale) return MSR_OK;
+  const msr_status status = find_drive(state);
+  state->guard.stale = status != MSR_OK;
+  return tell(state, status, err);
+}
+
 msr_status msri_guard_begin(msr_state *state, msr_error *err) {
-  if (state->guard.begun) return MSR_OK;
+  if (state->guard.begun) return msri_guard_resume(state, err);
   const msr_plan_figures *figures = &state->plan->figures;
   const msr_view view = msr_state_view(state);
   double *f = state->work.vector; /* the integrator begins anew */
@@ -121,9 +134,7 @@ msr_status msri_guard_begin(msr_state *state, msr_error *err) {
       .gravity = start.gravity,
       .outer = start.outer,
   };
-  return status == MSR_OK
-             ? MSR_OK
-             : msri_fail(err, status, "force %s: %s", state->failed->name, msr_status_text(status));
+  return tell(state, status, err);
 }
 
 /* ---- The verdict */

@@ -7,6 +7,9 @@
 /* Takes the state as the start, if it has none. */
 msr_status msri_guard_begin(msr_state *state, msr_error *err);
 
+/* Finds what driving forces do where the state is, if that isn't known. What a force returns. */
+msr_status msri_guard_resume(msr_state *state, msr_error *err);
+
 /* Adds what driving forces have done in the last step, of h. What a force returns. */
 msr_status msri_guard_follow(msr_state *state, double h);
 

@@ -11,8 +11,9 @@ static inline bool msri_leaps(const msr_state *state) {
   return plan->method && state->substep % plan->leg == 0;
 }
 
-/* As much of the leg that begins here as implicit steps do for less than its substeps. What poll or
- * a force returns, other than MSR_OK, leaves the state where the leg began. */
+/* As much of the leg that begins here as implicit steps do for less than its substeps, or, with care,
+ * all of it. `poll` is called once, at its beginning, so that a run which is interrupted has nothing
+ * to undo. What poll or a force returns. */
 msr_status msri_leap(msr_state *state, const msr_system *system, const msri_poll *poll);
 
 #endif

@@ -13,7 +13,7 @@ static msr_status give(const msr_sink *sink, const msr_state *state, uint64_t fr
 
 static msr_status deliver(msr_state *state, const msr_run_options *options, uint64_t frame,
                           msr_error *err) {
-  msr_status status = options->n_sinks > 0 ? msr_state_check(state, err) : MSR_OK;
+  msr_status status = MSR_OK;
   for (size_t s = 0; s < options->n_sinks && status == MSR_OK; s++)
     status = give(&options->sinks[s], state, frame, err);
   return status;
@@ -28,9 +28,11 @@ static msr_status step_to(msr_state *state, uint64_t iteration, const msri_poll 
     if (state->iteration < iteration)
       status = msri_step(state, iteration - state->iteration, poll, err);
     if (status != MSR_OK) return status;
-    const msr_status verdict = msr_state_check(state, err);
+    msr_error said = {MSR_OK, ""};
+    const msr_status verdict = msr_state_check(state, &said);
     status = msri_care_watch(state, verdict == MSR_EUNSTABLE, &turned, err);
-    if (status == MSR_OK && !turned) status = verdict;
+    if (status == MSR_OK && !turned && verdict != MSR_OK)
+      return msri_fail(err, verdict, "%s", said.message);
   }
   return status;
 }

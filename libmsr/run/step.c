@@ -64,6 +64,7 @@ msr_status msri_step_once(msr_state *state, const msr_system *system, const msr_
   const msr_status status = begin(state, system, interval->t);
   if (status != MSR_OK) return status;
   if (!integrator->adaptive) state->work.steps++;
+  state->end = interval->end;
   return integrator->step(integrator, system, interval, state->q, state->v, &state->work, err);
 }
 
@@ -117,7 +118,8 @@ static msr_status explain(const msr_state *state, msr_status status, const msr_e
 }
 
 msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *poll, msr_error *err) {
-  const uint64_t end = state->iteration + iterations;
+  const uint64_t left = UINT64_MAX - state->iteration;
+  const uint64_t end = state->iteration + (iterations < left ? iterations : left);
   state->failed = NULL;
   msr_status status = msri_guard_begin(state, err);
   if (status == MSR_OK) status = msri_care_begin(state, err);
@@ -126,11 +128,12 @@ msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *pol
     msr_error said = {MSR_OK, ""};
     status = advance(state, &system, poll, &said);
     if (status != MSR_OK) return explain(state, status, &said, err);
-    const msr_status verdict = msri_guard_watch(state, err);
+    const msr_status verdict = msri_guard_watch(state, &said);
     bool turned = false;
     status = msri_care_watch(state, verdict == MSR_EUNSTABLE, &turned, err);
     if (turned) system = msri_state_system(state);
-    if (status == MSR_OK && !turned) status = verdict;
+    if (status == MSR_OK && !turned && verdict != MSR_OK)
+      return msri_fail(err, verdict, "%s", said.message);
   }
   return status;
 }
