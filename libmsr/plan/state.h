@@ -8,7 +8,8 @@
 /* What the guard compares with: see run/guard.c. */
 typedef struct msri_guard {
   bool begun;
-  double energy;         /* kinetic and spring energy at the start, and of a first kick */
+  double energy;         /* kinetic and spring energy at the start, and what is no flaw: */
+  double slack;          /* that of a first kick, and of rounding */
   double gravity, outer; /* potentials of gravity and of the other outer forces at the start */
   double lost;           /* the most that these have lost */
   double work;           /* bound of what driving forces have done since */

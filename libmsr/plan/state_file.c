@@ -13,7 +13,7 @@
 /* A msri_guard in whole words. */
 typedef struct record {
   uint64_t begun, looked;
-  double energy, gravity, outer, lost, work, gain, power, most;
+  double energy, slack, gravity, outer, lost, work, gain, power, most;
 } record;
 
 typedef struct header {
@@ -32,13 +32,14 @@ static const char magic[8] = "msrstat2";
 static const uint64_t byte_order = 0x0102030405060708U;
 
 static record record_of(const msri_guard *g) {
-  return (record){g->begun, g->looked, g->energy, g->gravity, g->outer,
-                  g->lost,  g->work,   g->gain,   g->power,   g->most};
+  return (record){g->begun, g->looked, g->energy, g->slack, g->gravity, g->outer,
+                  g->lost,  g->work,   g->gain,   g->power, g->most};
 }
 
 static msri_guard guard_of(const record *r) {
   return (msri_guard){.begun = r->begun != 0,
                       .energy = r->energy,
+                      .slack = r->slack,
                       .gravity = r->gravity,
                       .outer = r->outer,
                       .lost = r->lost,

@@ -111,12 +111,13 @@ msr_status msri_guard_begin(msr_state *state, msr_error *err) {
       msri_state_add_forces(state, &view, msri_force_is_outer, false, f, f + view.n);
   if (status == MSR_OK) status = find_drive(state);
   const energies start = energies_of(state);
+  const double slack = kick_energy(&view, figures->h, f) + rounding_energy(&view, figures->omega);
   state->guard = (msri_guard){
       .begun = status == MSR_OK,
       .looked = msri_state_steps(state),
       .power = state->guard.power,
-      .energy =
-          start.moving + kick_energy(&view, figures->h, f) + rounding_energy(&view, figures->omega),
+      .energy = start.moving + slack,
+      .slack = slack,
       .gravity = start.gravity,
       .outer = start.outer,
   };
@@ -155,8 +156,9 @@ static balance balance_of(const msr_state *state, double *lost) {
 
 double msri_guard_gain(const msr_state *state, double *lost) {
   const balance b = balance_of(state, lost);
-  const double gain = state->plan->conserves ? fabs(b.gain) : b.gain;
-  return gain <= 0 ? 0 : gain / b.given;
+  const double lacks = state->plan->conserves ? -b.gain - state->guard.slack : 0;
+  const double change = b.gain <= 0 ? lacks : b.gain;
+  return change <= 0 ? 0 : change / b.given;
 }
 
 msr_status msr_state_check(msr_state *state, msr_error *err) {
