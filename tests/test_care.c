@@ -153,6 +153,22 @@ static void what_is_sound_is_verlets(void **unused) {
   close_world(plain);
 }
 
+/* Where there is hardly any energy, what the guard allows for a first kick isn't lacking. */
+static void what_rests_is_sound(void **unused) {
+  (void)unused;
+  static const double gravities[] = {0, 1e-9, 1e-3, -9.8};
+  for (size_t i = 0; i < LENGTH(gravities); i++)
+    for (int floor = 0; floor <= 1; floor++) {
+      msr_conf conf = example;
+      conf.gravity = gravities[i];
+      const size_t height = floor ? 5 : SIDE; /* the block stands on it */
+      world w = open_world_with(scene_from(room(SIDE, height, 6, 4), &conf, &closed), &automatic);
+      advance(&w, 1000);
+      if (careful(&w)) fail_msg("g = %g: switched", gravities[i]);
+      close_world(w);
+    }
+}
+
 /* Supports and drag that take energy are no reason; nor is wind, which brings some. */
 static void what_takes_energy_is_no_reason(void **unused) {
   (void)unused;
@@ -380,6 +396,7 @@ int main(void) {
       cmocka_unit_test(it_goes_back_to_what_was_sound),
       cmocka_unit_test(what_was_asked_for_is_done),
       cmocka_unit_test(what_is_sound_is_verlets),
+      cmocka_unit_test(what_rests_is_sound),
       cmocka_unit_test(what_takes_energy_is_no_reason),
       cmocka_unit_test(losses_are_a_reason_where_energy_is_kept),
       cmocka_unit_test(what_begins_crushed_begins_with_care),
