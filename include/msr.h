@@ -476,10 +476,10 @@ MSR_API msr_status msr_scene_set_contact(msr_scene *scene, double restitution, d
  * come back with the restitution of msr_scene_set_contact and without friction: impulses act along
  * the line between the centres, so that momentum is kept to rounding, angular momentum too where
  * two collide and to the order of the step where more do at once, and energy is never made. Who is
- * closer to another at the start is moved apart from it, slowly, the centre of mass staying where it
- * is, for which its springs may have to give way: that adds energy. Supports are met by the centre.
- * Order 1 through a collision, with either rule of msr_impacts; with MSR_IMPACTS_LOCATED methods
- * other than Verlet and symplectic Euler then end no step at an impact. Of more than
+ * closer to another at the start is moved apart from it, slowly, the centre of mass staying where
+ * it is, for which its springs may have to give way: that adds energy. Supports are met by the
+ * centre. Order 1 through a collision, with either rule of msr_impacts; with MSR_IMPACTS_LOCATED
+ * methods other than Verlet and symplectic Euler then end no step at an impact. Of more than
  * 8 * masses + 4096 pairs that meet in one step the others aren't seen. MSR_EUSAGE. */
 MSR_API msr_status msr_scene_set_collisions(msr_scene *scene, double diameter, msr_error *err);
 
@@ -538,8 +538,10 @@ typedef struct msr_plan_options {
   const msr_integrator *integrator; /* NULL: Verlet and, if substeps is 0 and an iteration takes
                                      * hundreds, steps of energy-momentum as long as many substeps
                                      * wherever they cost less; tries that fail add a quarter of the
-                                     * substeps' cost at most, in counted work. With located
-                                     * impacts, only where nothing can be hit */
+                                     * substeps' cost at most, in counted work; and from where
+                                     * energy comes from nowhere on, see msr_state_step. With
+                                     * located impacts, only where nothing can be hit; never with
+                                     * collisions */
   uint64_t substeps; /* steps per iteration; 0: as many as keep below the safe step */
   double atol, rtol; /* of adaptive methods, as in msr_system: the error of a step is up to
                       * atol + rtol |q| [px] in x and y and atol + rtol |v| [px/s] in vx and vy; an
@@ -589,9 +591,11 @@ typedef struct msr_plan_figures {
   double h;           /* of a step: dt / substeps [s] */
   double stable_step; /* steps below this are stable at any stretch [s]; 0: none; may be INFINITY */
   double safe_step;   /* the library's own steps are no larger: 0.9 of it; where supports may be hit
-                       * 0.5, and down to 1/16 where a fall can crush springs, m g H > 0.15 k L^2,
-                       * 1/128 where what moves or is compressed at the start can;
-                       * of implicit methods there, and of symplectic ones, the same of 2 / omega */
+                       * 0.42, or 0.5 if something takes energy or brings it; but where a state
+                       * doesn't watch its energy (see msr_state_step) 0.5, down to 1/16 where a
+                       * fall can crush springs, m g H > 0.15 k L^2, and 1/128, supports or none,
+                       * where what moves or is compressed at the start can; of implicit methods
+                       * at supports, and of symplectic ones, the same of 2 / omega */
   double omega;       /* bound of the angular frequencies, at any stretch [1/s] (Gershgorin) */
   double gamma;       /* bound of the rates of damping that limit the step [1/s] */
   size_t plan_bytes, state_bytes; /* of memory */
@@ -665,7 +669,8 @@ MSR_API msr_status msr_state_load(msr_state *state, const char *path, msr_error 
 /* The system as it is; valid until the state steps or is freed. */
 MSR_API msr_view msr_state_view(const msr_state *state);
 
-/* Arrays for a program to change; ask again after every step. */
+/* Arrays for a program to change; ask again after every step. The energy that there is then is the
+ * start of what the guard knows, and of what is watched (msr_state_step). */
 typedef struct msr_arrays {
   double *x, *y, *vx, *vy; /* [masses] */
 } msr_arrays;
@@ -674,9 +679,17 @@ MSR_API msr_arrays msr_state_edit(msr_state *state);
 /* Iterations done. */
 MSR_API uint64_t msr_state_iteration(const msr_state *state);
 
-/* Advances by `iterations` of DT. The guard looks at speeds every 16 steps, and at all energies
- * every 128: MSR_EUNSTABLE names the mass, its longest spring, the time and a step that is stable.
- * Or what a force returns. */
+/* Advances to `iterations` of DT from here. The guard looks at speeds every 16 steps, and at all
+ * energies every 128: MSR_EUNSTABLE names the mass, its longest spring, the time and a step that is
+ * stable. Or what a force returns.
+ * If neither integrator nor substeps were asked for, springs are there, masses don't collide, and
+ * impacts at supports aren't located, a state watches its energy: every 64 iterations, x, y, vx, vy
+ * are kept. When by then more than 2 % of what the scene had to give came from nowhere, or was lost
+ * where nothing takes any, or the guard refuses the state, it goes back to what was kept, and comes
+ * here by steps of energy-momentum, four an iteration at most, or shorter ones where equations
+ * can't be solved, which keep the energy, and cost tens of times more; so it goes on
+ * (msr_work.careful). What is crushed at the start begins so. Bits don't depend on how steps are
+ * grouped. MSR_ENOMEM if there is no memory for such steps; then the state can be stepped again. */
 MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err);
 
 /* The guard: what a driving force returns, or MSR_EUNSTABLE if a number or an energy isn't finite
@@ -685,7 +698,9 @@ MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_err
 MSR_API msr_status msr_state_check(msr_state *state, msr_error *err);
 
 /* The most energy that has come from nowhere since the start, by the guard's looks, over what the
- * scene had to give: above a few per cent, a smaller step is called for. */
+ * scene had to give: above a few per cent, a smaller step is called for. A state that went back
+ * knows
+ * what it knew there. */
 MSR_API double msr_state_energy_gain(const msr_state *state);
 
 /* Total force on each mass, fx, fy [masses] [kg px/s^2], contacts apart. What a force returns. */
