@@ -48,8 +48,8 @@ static void add_counters(suite *s) {
                      .parameter = from[i],
                      .brief = 1000,
                      .full = 100000,
-                     .growth = 0.05,
-                     .loss = 0.1,
+                     .growth = 0.025,
+                     .loss = 0.05,
                      .check = same_as_young,
                      .why = "the same bits as from t = 0, though DT is below the ulp of t"};
     snprintf(row.name, sizeof row.name, "numbers: iteration %.10g", from[i]);

@@ -69,9 +69,8 @@ static const msr_conf conf_of_assignment = {0.005, 9.8, 0.1, 1500, 1, 1};
 
 /* Reasons that rows share. */
 static const char why_modified[] =
-    "impacts: Verlet keeps an energy that differs from the true one by up to h^2 omega^2 / 4 of "
-    "the "
-    "fastest modes, 0.094 at half of the largest step; more than 5 % above, msr warns";
+    "impacts: Verlet keeps an energy that differs from the true one by a share of what is in the "
+    "fastest modes; beyond 2 % a state goes back, and beyond 5 %, where it can't, msr warns";
 static const char why_care[] =
     "masses pass through each other; that is seen at 2 % of what there was to give, and kept from "
     "there on";
