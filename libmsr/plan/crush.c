@@ -52,10 +52,8 @@ static double stiffness_of(const msr_run_of_springs *run, const msr_view *s, dou
  * all springs to a point. A picture begins at rest, its springs as long as they will. */
 static double at_start(const msr_plan *plan, const msr_view *s) {
   const msr_springs *springs = &plan->mesh.springs;
-  double energy = 0, whole = 0;
   if (plan->n_picture == s->n) return 0;
-  for (size_t i = 0; msri_plan_meets(plan) && i < s->n; i++)
-    energy += msr_view_mass(s, i) * (s->vx[i] * s->vx[i] + s->vy[i] * s->vy[i]);
+  double energy = msri_plan_meets(plan) ? 2 * msri_kinetic(s) : 0, whole = 0;
   for (size_t r = 0; r < springs->n_runs; r++) whole += stiffness_of(&springs->run[r], s, &energy);
   return whole > 0 ? energy / whole : 0;
 }
