@@ -132,6 +132,11 @@ static inline double msri_plan_time(const msr_plan_figures *f, uint64_t iteratio
   return (double)iteration * f->dt + (double)substep * f->h;
 }
 
+/* Terms, contacts and effects that the scene calls for at its start. MSR_ENOMEM, what
+ * force->prepare returns. */
+msr_status msri_plan_call_for_effects(msr_plan *plan, const msr_scene *scene, const msr_view *start,
+                                      msr_error *err);
+
 /* Start of every mass. x, y, vx, vy [masses]. */
 void msri_plan_start(const msr_plan *plan, double *x, double *y, double *vx, double *vy);
 
