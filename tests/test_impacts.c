@@ -656,6 +656,7 @@ static void what_is_known_is_not_taken_for_more(void **unused) {
   const msr_system system = msri_state_system(w.state);
   double *q = w.state->q, *v = w.state->v, a[2] = {3, 0};
   const double v0[] = {v[0], v[1]};
+  w.state->end = 0.1;
   must(system.drift(system.self, 0.1, v0, a, q, v));
   assert_int_equal(msr_state_work(w.state).evaluations, 1); // there was an impact
   must(system.acceleration(system.self, 0.1, q, v, a));
