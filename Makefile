@@ -53,8 +53,8 @@ HARD_SRC := $(wildcard tests/stability/*.c)
 BESIDE_SRC := $(wildcard tests/bench/stability/*.c tests/bench/stability/*.cc)
 SOURCES  := $(LIB_SRC) $(CLI_SRC) $(TEST_SRC) $(FUZZ_SRC) $(BITS_SRC) $(HARD_SRC) $(BENCH_SRC) \
             $(BESIDE_SRC) $(EX_SRC)
-HEADERS  := $(wildcard include/*.h libmsr/*/*.h cli/*.h tests/*.h tests/fuzz/*.h tests/stability/*.h \
-            tests/bench/*.h tests/bench/stability/*.h)
+HEADERS  := $(wildcard include/*.h libmsr/*/*.h cli/*.h tests/*.h tests/fuzz/*.h \
+            tests/stability/*.h tests/bench/*.h tests/bench/stability/*.h)
 DOCS     := $(wildcard README.md LICENSE CHANGELOG.md docs/*.md docs/images/*.png include/*.h \
              examples/*.md examples/*.c examples/scenes/*)
 MAN      := $(wildcard docs/*.1)
@@ -242,7 +242,8 @@ SUNDIALS_LIBS = -lsundials_arkode -lsundials_cvode -lsundials_nvecserial -lsundi
 
 $(BUILD)/obj/%.o: %.cc $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(call show,CXX)$(CXX) -std=c++17 -Iinclude $(WARNINGS) $(CFLAGS) $(ARITHMETIC) -MMD -MP -c $< -o $@
+	$(call show,CXX)$(CXX) -std=c++17 -Iinclude $(WARNINGS) $(CFLAGS) $(ARITHMETIC) \
+	  -MMD -MP -c $< -o $@
 
 $(BENCH): $(BENCH_OBJ) $(BUILD)/libmsr.a
 	@mkdir -p $(@D)
@@ -331,7 +332,8 @@ uninstall:
 	rm -f $(addprefix $(DESTDIR)$(PREFIX)/,bin/msr include/msr.h) \
 	  $(addprefix $(DESTDIR)$(LIBDIR)/,$(LIBS) pkgconfig/msr.pc) \
 	  $(addprefix $(DESTDIR)$(DOCDIR)/,$(DOCS)) $(addprefix $(DESTDIR)$(MANDIR)/,$(notdir $(MAN)))
-	rmdir $(addprefix $(DESTDIR)$(DOCDIR)/,examples/scenes examples docs/images docs include) $(DESTDIR)$(DOCDIR) 2>/dev/null || true
+	rmdir $(addprefix $(DESTDIR)$(DOCDIR)/,examples/scenes examples docs/images docs include) \
+	  $(DESTDIR)$(DOCDIR) 2>/dev/null || true
 
 ## clean: removes build/, where all is
 clean:
@@ -343,7 +345,8 @@ help:
 
 .PHONY: all examples everything deps demo test check check-gcc check-clang check-san \
         check-valgrind check-tidy check-cppcheck check-format format coverage fuzz run-fuzzers \
-        stability mutations bench-accuracy bench-guard bench-stability report figures install uninstall clean help
+        stability mutations bench-accuracy bench-guard bench-stability report figures \
+        install uninstall clean help
 FORCE:
 .DELETE_ON_ERROR:
 -include $(patsubst %.o,%.d,$(call object,$(SOURCES)))

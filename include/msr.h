@@ -296,9 +296,10 @@ typedef struct msr_system {
    * methods take differences of a. */
   msr_status (*solve)(void *self, const double *r, double tolerance, double *x);
   /* Marks in held [n] the coordinates that something in the way stops between q0 and q, beside
-   * those that are marked, which don't move; `more` tells whether there are any. A coordinate that
-   * is held does no work and has its velocity reversed, by a step of energy-momentum, so that the
-   * energy is kept through elastic impacts at any step. NULL: nothing is in the way. */
+   * those that are marked, which don't move; `more` tells whether it marked any: the step is then
+   * solved again, so that each time one at least must be new. A coordinate that is held does no
+   * work and has its velocity reversed, by a step of energy-momentum, so that the energy is kept
+   * through elastic impacts at any step. NULL: nothing is in the way. */
   msr_status (*hold)(void *self, const double *q0, const double *q, bool *held, bool *more);
   /* What impacts that aren't elastic make of v after a step in which coordinates were held; push
    * [n] is the change of velocity that holding each of them took. NULL: nothing. */
@@ -591,14 +592,14 @@ typedef struct msr_plan_figures {
   double h;           /* of a step: dt / substeps [s] */
   double stable_step; /* steps below this are stable at any stretch [s]; 0: none; may be INFINITY */
   double safe_step;   /* the library's own steps are no larger: 0.9 of it; where supports may be hit
-                       * 0.42, or 0.5 if something takes energy or brings it; but where a state
-                       * doesn't watch its energy (see msr_state_step) 0.5, down to 1/16 where a
-                       * fall can crush springs, m g H > 0.15 k L^2, and 1/128, supports or none,
-                       * where what moves or is compressed at the start can; of implicit methods
-                       * at supports, and of symplectic ones, the same of 2 / omega */
+                       * 0.5, or with `care` 0.42 if nothing takes or brings energy; without `care`
+                       * down to 1/16 where a fall can crush springs, m g H > 0.15 k L^2, and 1/128
+                       * where what moves or is compressed at the start can;
+                       * of implicit methods there, and of symplectic ones, the same of 2 / omega */
   double omega;       /* bound of the angular frequencies, at any stretch [1/s] (Gershgorin) */
   double gamma;       /* bound of the rates of damping that limit the step [1/s] */
-  size_t plan_bytes, state_bytes; /* of memory */
+  size_t plan_bytes, state_bytes; /* of memory; what a state allocates once steps of `care` begin,
+                                   * as much as implicit methods take, isn't counted */
 } msr_plan_figures;
 MSR_API msr_plan_figures msr_plan_describe(const msr_plan *plan);
 
@@ -631,9 +632,9 @@ typedef struct msr_stability {
                         * chosen (Gershgorin) [s] */
 } msr_stability;
 
-/* Analyses the plan: some 100 products of the matrix of springs with a vector, in a second for a
- * lattice of 10^6 masses; memory, given back: 13 doubles a mass. MSR_ENOMEM, or what
- * force->rates, force->add, or the integrator's step returns. */
+/* Analyses the plan: some 100 products of the matrix of springs with a vector; memory, given back:
+ * 13 doubles a mass. MSR_ENOMEM, or what force->rates, force->add or the integrator's step returns.
+ */
 MSR_API msr_status msr_plan_stability(const msr_plan *plan, msr_stability *stability,
                                       msr_error *err);
 
@@ -660,36 +661,38 @@ MSR_API void msr_state_copy(msr_state *to, const msr_state *from);
  * for the same bits. */
 MSR_API uint64_t msr_state_hash(const msr_state *state);
 
-/* Writes t, x, y, vx, vy, the iterations, contacts and frames so far to a file, and reads them back
- * into a state of a plan with the same masses, DT and substeps: what follows has the same bits as
- * if it had never been saved, unless the integrator remembers. MSR_EIO, MSR_EINPUT. */
+/* Writes to a file and reads back x, y, vx, vy, the iterations, substeps, contacts and frames so
+ * far, what the guard knows, whether care is on and what it would go back to: what follows has the
+ * same bits as if it had never been saved, unless the integrator remembers. The work and the calls
+ * are left out: after a load they begin at 0. The plan must have as many masses, the same DT and
+ * substeps, and have chosen them by itself or not, as the one that it was saved from; on failure
+ * the state is as it was. MSR_EIO, MSR_EINPUT. */
 MSR_API msr_status msr_state_save(const msr_state *state, const char *path, msr_error *err);
 MSR_API msr_status msr_state_load(msr_state *state, const char *path, msr_error *err);
 
 /* The system as it is; valid until the state steps or is freed. */
 MSR_API msr_view msr_state_view(const msr_state *state);
 
-/* Arrays for a program to change; ask again after every step. The energy that there is then is the
- * start of what the guard knows, and of what is watched (msr_state_step). */
+/* Arrays for a program to change; ask again after every step. To ask is to change: the guard takes
+ * what the next step begins with for the start, and steps of care, if they were on, end. */
 typedef struct msr_arrays {
   double *x, *y, *vx, *vy; /* [masses] */
 } msr_arrays;
 MSR_API msr_arrays msr_state_edit(msr_state *state);
 
-/* Iterations done. */
+/* Iterations done. While the state steps (seen from poll, say) they may go back, by 64 at most, to
+ * where its energy was sound (figures.care). */
 MSR_API uint64_t msr_state_iteration(const msr_state *state);
 
 /* Advances to `iterations` of DT from here. The guard looks at speeds every 16 steps, and at all
  * energies every 128: MSR_EUNSTABLE names the mass, its longest spring, the time and a step that is
- * stable. Or what a force returns.
- * If neither integrator nor substeps were asked for, springs are there, masses don't collide, and
- * impacts at supports aren't located, a state watches its energy: every 64 iterations, x, y, vx, vy
- * are kept. When by then more than 2 % of what the scene had to give came from nowhere, or was lost
- * where nothing takes any, or the guard refuses the state, it goes back to what was kept, and comes
- * here by steps of energy-momentum, four an iteration at most, or shorter ones where equations
- * can't be solved, which keep the energy, and cost tens of times more; so it goes on
- * (msr_work.careful). What is crushed at the start begins so. Bits don't depend on how steps are
- * grouped. MSR_ENOMEM if there is no memory for such steps; then the state can be stepped again. */
+ * stable. With figures.care, x, y, vx, vy are kept every 64 iterations; once 2 % of what the scene
+ * had to give came from nowhere, or was lost where nothing takes any, or the guard refuses the
+ * state, it goes back to what was kept, and comes here by steps of that method, over four substeps
+ * at most, or less where equations can't be solved. They keep the energy and cost tens of times
+ * more; what is crushed at the start begins so. Bits don't depend on how steps are grouped.
+ * MSR_ENOMEM if there is no memory for such steps: the state may be stepped again. Or what a force
+ * returns. */
 MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err);
 
 /* The guard: what a driving force returns, or MSR_EUNSTABLE if a number or an energy isn't finite
@@ -718,17 +721,19 @@ MSR_API msr_energy msr_state_energy(const msr_state *state);
 /* Times that effect i (of msr_plan_effects) was called to step the state, on all masses at once. */
 MSR_API uint64_t msr_state_calls(const msr_state *state, size_t effect);
 
-/* Collisions of masses with supports and with each other so far. */
+/* Collisions of masses with supports and with each other so far, those included that were taken
+ * back with their steps (figures.care). */
 MSR_API uint64_t msr_state_contacts(const msr_state *state);
 
 /* Steps so far, those that an adaptive method chose and those that ended at an impact or were tried
- * in search of it included, and evaluations of the acceleration. */
+ * in search of it included, and evaluations of the acceleration. All but `careful` begin at 0 after
+ * msr_state_load. */
 typedef struct msr_work {
   uint64_t steps, evaluations;
   uint64_t leaps, leapt; /* long steps (figures.leaps) among them, and the substeps that they took
                           * the place of */
-  uint64_t careful; /* the iteration from which on steps were those of energy-momentum, since energy
-                     * had come from nowhere; UINT64_MAX: never */
+  uint64_t careful; /* the iteration from which on steps are those of energy-momentum, since energy
+                     * had come from nowhere; UINT64_MAX: none, or not since the last change */
 } msr_work;
 MSR_API msr_work msr_state_work(const msr_state *state);
 
@@ -788,16 +793,18 @@ MSR_API msr_status msr_sink_close(msr_sink *sink, msr_error *err);
 typedef struct msr_run_options {
   const msr_sink *sinks; /* [n_sinks], each given every frame in turn */
   size_t n_sinks;
-  /* Called before every substep and every leap with the state (NULL: none); a status other than
-   * MSR_OK ends the run and comes back unchanged. Running the state again goes on from there. */
+  /* Called with the state before every substep and every stretch of long steps, which is an
+   * iteration or a part of it (NULL: none); a status other than MSR_OK ends the run and comes back
+   * unchanged. Running the state again goes on from there. */
   msr_status (*poll)(void *data, const msr_state *state);
   void *data;
 } msr_run_options;
 
 /* Runs the state from where it is to the plan's last iteration; `options` may be NULL. Every frame
  * is checked before it goes to the sinks, which stay open; none goes twice, and those that the
- * state has already passed don't come back. MSR_EUNSTABLE, or what a force, a sink or poll returns.
- */
+ * state has already passed don't come back: where it goes back (figures.care), frames that were
+ * given stay as they are. MSR_EUNSTABLE and MSR_ENOMEM as of msr_state_step, or what a force, a
+ * sink or poll returns. */
 MSR_API msr_status msr_run(msr_state *state, const msr_run_options *options, msr_error *err);
 
 /* ---- Accuracy: what it costs in time --------------------------------------------------------- */

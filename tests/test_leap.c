@@ -173,8 +173,8 @@ static void check_run(double k_times, double dt_times) {
     const double cost = w.state->leap.spent - spent + all -
                         u * (double)(msr_state_work(w.state).leapt - before.leapt);
     /* a limit is found to be passed by one more matrix and mean force */
-    const double legs = ceil((double)f.substeps / (double)w.plan->leaping.leg);
-    if (!(cost <= 1.25 * all + 14 * legs)) fail_msg("K %g: cost %g of %g", k_times, cost, all);
+    const double stretches = ceil((double)f.substeps / (double)w.plan->leaping.stretch);
+    if (!(cost <= 1.25 * all + 14 * stretches)) fail_msg("K %g: cost %g of %g", k_times, cost, all);
     const double off = energy(&w) / e1 - 1;
     if (msr_state_work(w.state).leapt - before.leapt == f.substeps && !(fabs(off) < 1e-10))
       fail_msg("K %g: a leap changes the energy by %g", k_times, off);
@@ -377,8 +377,8 @@ static const msr_integrator *leaps_of(double dt, double k, const msr_plan_option
   return f.leaps;
 }
 
-/* Soft springs never leap, whatever DT: a leg has no more substeps. Nor does what was asked for by
- * name, or has its impacts located. */
+/* Soft springs never leap, whatever DT: a stretch has no more substeps. Nor does what was asked for
+ * by name, or has its impacts located. */
 static void leaps_are_for_stiff_springs(void **state) {
   (void)state;
   const msr_plan_options located = {.impacts = MSR_IMPACTS_LOCATED}, fixed = {.substeps = 5000};

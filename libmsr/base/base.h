@@ -31,6 +31,9 @@ void *msri_grow(void *block, size_t *capacity, size_t count, size_t size, const 
 static inline double msri_min(double a, double b) { return a < b ? a : b; }
 static inline double msri_max(double a, double b) { return a > b ? a : b; }
 
+/* The least multiple of `unit` that isn't below n. */
+static inline size_t msri_round_up(size_t n, size_t unit) { return (n + unit - 1) / unit * unit; }
+
 /* The larger, but what is no number before any. */
 static inline double msri_worse(double a, double b) { return a >= b || a != a ? a : b; }
 

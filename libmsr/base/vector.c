@@ -68,6 +68,12 @@ double msri_largest(size_t n, const double *x) {
   return most + sound;
 }
 
+double msri_dot(size_t n, const double *x, const double *y) {
+  double sum = 0;
+  for (size_t i = 0; i < n; i++) sum += x[i] * y[i];
+  return sum;
+}
+
 double msri_sum_squares(size_t n, const double *w, const double *x) {
 #if MSRI_WIDE
   if (msri_has_avx2()) return sum_squares_avx2(n, w, x);

@@ -13,6 +13,9 @@ void msri_scale(size_t n, double c, double *y);
 /* The largest |x[i]|; no finite number if one isn't. */
 double msri_largest(size_t n, const double *x);
 
+/* Sum of x[i] y[i], in that order. */
+double msri_dot(size_t n, const double *x, const double *y);
+
 /* Sum of w[i] x[i]^2; w NULL: all are 1. */
 double msri_sum_squares(size_t n, const double *w, const double *x);
 

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { KNOWN_D_PUSH = 3, HELD = 1 }; /* vectors of a step beside those of Newton's method */
+
 /* Without a discrete gradient it is the midpoint rule, whose workspace is no larger. */
 static msr_status without(const msr_system *system, const msr_interval *interval, double *q,
                           double *v, msr_workspace *work, msr_error *err) {
@@ -80,7 +82,7 @@ const msr_integrator msr_integrator_energy_momentum = {
     .implicit = true,
     .stability = (double)INFINITY,
     .damping_stability = (double)INFINITY,
-    .vectors = 1 + 1 + 1 + 1 + MSRI_NEWTON_VECTORS,
+    .vectors = KNOWN_D_PUSH + MSRI_NEWTON_VECTORS + HELD,
     .open = msri_newton_open,
     .close = free,
     .step = step,

@@ -20,12 +20,6 @@ typedef struct krylov {
   double *shadow, *residual, *direction, *image, *second;
 } krylov;
 
-static double dot(size_t n, const double *a, const double *b) {
-  double sum = 0;
-  for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 msr_status msri_stage_acceleration(const msri_stage *stage, const double *q, double *a) {
   const msr_system *s = stage->system;
   if (stage->between) return s->between(s->self, stage->t, stage->q0, q, a);
@@ -35,7 +29,7 @@ msr_status msri_stage_acceleration(const msri_stage *stage, const double *q, dou
 /* y = A x. The displacement e x is the square root of rounding, where the errors of the difference,
  * of order e and eps / e, are alike. */
 static msr_status multiply(const krylov *k, const double *x, double *y) {
-  const double length = sqrt(dot(k->n, x, x));
+  const double length = sqrt(msri_dot(k->n, x, x));
   const double e = length > 0 ? sqrt(DBL_EPSILON) * (1 + k->size) / length : 1;
   memcpy(k->place, k->q, k->n * sizeof *x);
   msri_add_scaled(k->n, e, x, k->place);
@@ -48,7 +42,7 @@ static msr_status multiply(const krylov *k, const double *x, double *y) {
 }
 
 static bool small(const krylov *k, double tolerance, const double *x) {
-  return dot(k->n, k->residual, k->residual) <= tolerance * tolerance * dot(k->n, x, x);
+  return msri_dot(k->n, k->residual, k->residual) <= tolerance * tolerance * msri_dot(k->n, x, x);
 }
 
 /* One step; `done` if it's the last. rho is shadow . residual. */
@@ -56,21 +50,21 @@ static msr_status iterate(const krylov *k, double tolerance, double *x, double *
   const size_t n = k->n;
   msr_status status = multiply(k, k->direction, k->image);
   if (status != MSR_OK) return status;
-  const double alpha = *rho / dot(n, k->shadow, k->image);
+  const double alpha = *rho / msri_dot(n, k->shadow, k->image);
   *done = !isfinite(alpha);
-  if (*done) return dot(n, x, x) > 0 ? MSR_OK : MSR_EUNSTABLE;
+  if (*done) return msri_dot(n, x, x) > 0 ? MSR_OK : MSR_EUNSTABLE;
   msri_add_scaled(n, alpha, k->direction, x);
   msri_add_scaled(n, -alpha, k->image, k->residual);
   *done = small(k, tolerance, x);
   if (*done) return MSR_OK;
   status = multiply(k, k->residual, k->second);
   if (status != MSR_OK) return status;
-  const double omega = dot(n, k->second, k->residual) / dot(n, k->second, k->second);
+  const double omega = msri_dot(n, k->second, k->residual) / msri_dot(n, k->second, k->second);
   *done = !(fabs(omega) > 0);
   if (*done) return MSR_OK;
   msri_add_scaled(n, omega, k->residual, x);
   msri_add_scaled(n, -omega, k->second, k->residual);
-  const double next = dot(n, k->shadow, k->residual), beta = next / *rho * alpha / omega;
+  const double next = msri_dot(n, k->shadow, k->residual), beta = next / *rho * alpha / omega;
   for (size_t i = 0; i < n; i++)
     k->direction[i] = k->residual[i] + beta * (k->direction[i] - omega * k->image[i]);
   *rho = next;
@@ -84,7 +78,7 @@ msr_status msri_krylov_solve(const msri_stage *stage, const double *q, const dou
   const krylov k = {stage,
                     n,
                     q,
-                    sqrt(dot(n, q, q)),
+                    sqrt(msri_dot(n, q, q)),
                     memory,
                     memory + n,
                     memory + 2 * n,
@@ -98,7 +92,7 @@ msr_status msri_krylov_solve(const msri_stage *stage, const double *q, const dou
   memcpy(k.shadow, r, bytes);
   memcpy(k.residual, r, bytes);
   memcpy(k.direction, r, bytes);
-  double rho = dot(n, r, r);
+  double rho = msri_dot(n, r, r);
   bool done = rho == 0;
   for (int i = 0; i < most && !done && status == MSR_OK; i++)
     status = iterate(&k, tolerance, x, &rho, &done);

@@ -5,12 +5,18 @@
  * from about 0.15 k L^2 for each mass on, has masses that pass through each other, whose force
  * turns round within a step. Measured: where a fall does that, up to 8 times smaller steps keep the
  * energy to a few per cent; where it's crushed from the start, or thrown against a support, 64
- * times smaller ones to 7 per cent. */
+ * times smaller ones to 7 per cent. Care (run/care.c) makes up for those, but not for what an
+ * impact that keeps its place leaves, an error of the order of h^3: in 10 000 s the assignment's
+ * example heats by 1.0 % of its energy at 0.43 of the limit, in 2 substeps, and by 0.12 % at 0.29,
+ * in 3. */
 #include "plan/plan.h"
 
 #include <math.h>
 
 static const double crushing = 0.15;
+
+/* Too little for 2 substeps of that example; for where nothing takes what impacts give. */
+static const double kept_share = 0.42;
 
 double msri_plan_gravity(const msr_plan *plan) {
   double g = 0;
@@ -46,10 +52,8 @@ static double stiffness_of(const msr_run_of_springs *run, const msr_view *s, dou
  * all springs to a point. A picture begins at rest, its springs as long as they will. */
 static double at_start(const msr_plan *plan, const msr_view *s) {
   const msr_springs *springs = &plan->mesh.springs;
-  double energy = 0, whole = 0;
   if (plan->n_picture == s->n) return 0;
-  for (size_t i = 0; msri_plan_meets(plan) && i < s->n; i++)
-    energy += msr_view_mass(s, i) * (s->vx[i] * s->vx[i] + s->vy[i] * s->vy[i]);
+  double energy = msri_plan_meets(plan) ? 2 * msri_kinetic(s) : 0, whole = 0;
   for (size_t r = 0; r < springs->n_runs; r++) whole += stiffness_of(&springs->run[r], s, &energy);
   return whole > 0 ? energy / whole : 0;
 }
@@ -62,7 +66,7 @@ double msri_plan_safe_share(const msr_plan *plan, const msr_view *start) {
   const bool meets = msri_plan_meets(plan);
   if (!plan->cares && msri_plan_crushes(plan, start)) return 0.5 / 64;
   if (!meets) return 0.9;
-  if (plan->cares) return plan->conserves ? 0.42 : 0.5;
+  if (plan->cares) return plan->conserves ? kept_share : 0.5;
   const double crushed = by_fall(plan) / crushing;
   return crushed > 1 ? 0.5 / msri_min(crushed, 8) : 0.5;
 }

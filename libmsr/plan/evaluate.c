@@ -55,15 +55,9 @@ msr_status msri_state_accelerate(msr_state *state, double t, const double *q, co
   return status;
 }
 
-static bool damps(const msr_plan *plan) {
-  for (size_t i = 0; i < plan->n_terms; i++)
-    if (plan->term[i].force->uses_velocity) return true;
-  return false;
-}
-
 static msr_status acceleration(void *self, double t, const double *q, const double *v, double *a) {
   msr_state *state = self;
-  if (state->known.q && !(v && damps(state->plan)) && msri_state_knows(state, t, q)) {
+  if (state->known.q && !(v && msri_plan_damps(state->plan)) && msri_state_knows(state, t, q)) {
     memcpy(a, state->ahead, 2 * state->plan->figures.masses * sizeof *a);
     return MSR_OK;
   }
@@ -116,7 +110,7 @@ msr_system msri_state_system(msr_state *state) {
       .n = 2 * state->plan->figures.masses,
       .self = state,
       .acceleration = acceleration,
-      .damp = damps(state->plan) ? damp : NULL,
+      .damp = msri_plan_damps(state->plan) ? damp : NULL,
       .drift = own ? msri_state_drift : NULL,
       .bounce = own ? msri_state_bounce : NULL,
       .atol = state->plan->figures.atol,

@@ -8,24 +8,23 @@
  * assignment's scene): cost of a substep of Verlet, in evaluations of the acceleration. */
 static const double free_substep = 1.2, supported_substep = 2.3;
 
-/* A leap through empty space: four times the mean force and the matrix, some iterations. */
-static const double cheapest = 100;
+/* Through empty space: four times the mean force and the matrix, some iterations. */
+const double msri_leap_least = 100;
 
-static const double share = 0.25; /* of the cost of substeps that may be spent in vain */
-static const double reach = 1;    /* [px] that a leap may stop a mass before a support */
+const double msri_leap_share = 0.25, msri_leap_reach = 1;
 
 /* The time in which what has fallen through the picture moves by what a leap may leave out, at
  * supports; any, where there is none. */
-static double time_of_leg(const msr_plan *plan) {
+static double time_of_stretch(const msr_plan *plan) {
   const double fallen = 2 * msri_plan_gravity(plan) * (double)plan->figures.height;
-  return plan->contact.drift && fallen > 0 ? reach / sqrt(fallen) : (double)INFINITY;
+  return plan->contact.drift && fallen > 0 ? msri_leap_reach / sqrt(fallen) : (double)INFINITY;
 }
 
-/* An iteration is cut in so many legs, at substeps. */
-static uint64_t leg_of(const msr_plan *plan) {
+/* An iteration is cut in so many stretches, at substeps. */
+static uint64_t stretch_of(const msr_plan *plan) {
   const msr_plan_figures *f = &plan->figures;
-  const double legs = msri_max(1, ceil(f->dt / time_of_leg(plan)));
-  return (uint64_t)ceil((double)f->substeps / msri_min(legs, (double)f->substeps));
+  const double stretches = msri_max(1, ceil(f->dt / time_of_stretch(plan)));
+  return (uint64_t)ceil((double)f->substeps / msri_min(stretches, (double)f->substeps));
 }
 
 static msr_status explain(msr_plan *plan, msr_error *err) {
@@ -34,7 +33,7 @@ static msr_status explain(msr_plan *plan, msr_error *err) {
       &plan->notes, err,
       "long implicit steps (%s) where they cost less than substeps of %s; tries cost at most %g "
       "%% more than these: to do without, ask for %s",
-      plan->leaping.method->name, f->integrator->name, 100 * share, f->integrator->name);
+      f->leaps->name, f->integrator->name, 100 * msri_leap_share, f->integrator->name);
 }
 
 bool msri_plan_can_leap(const msr_plan *plan) {
@@ -46,19 +45,13 @@ bool msri_plan_can_leap(const msr_plan *plan) {
 msr_status msri_plan_choose_leaps(msr_plan *plan, msr_error *err) {
   msr_plan_figures *f = &plan->figures;
   const double substep = plan->contact.drift ? supported_substep : free_substep;
-  const uint64_t leg = leg_of(plan);
+  const uint64_t stretch = stretch_of(plan);
   if (!msri_plan_can_leap(plan)) return MSR_OK;
-  plan->leaping.reach = reach;
-  if (share * substep * (double)leg < cheapest) return MSR_OK;
+  if (msri_leap_share * substep * (double)stretch < msri_leap_least) return MSR_OK;
   const msr_status status = msri_graph_create(f->masses, &plan->mesh.springs, &plan->graph, err);
   if (status != MSR_OK) return status;
-  plan->leaping = (msri_leaping){.method = &msr_integrator_energy_momentum,
-                                 .substep = substep,
-                                 .least = cheapest,
-                                 .share = share,
-                                 .reach = reach,
-                                 .leg = leg};
+  plan->leaping = (msri_leaping){.substep = substep, .stretch = stretch};
   plan->middle = true;
-  f->leaps = plan->leaping.method;
+  f->leaps = &msr_integrator_energy_momentum;
   return explain(plan, err);
 }

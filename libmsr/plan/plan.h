@@ -33,15 +33,16 @@ typedef struct msri_mesh {
   size_t run_capacity, anchor_capacity;
 } msri_mesh;
 
-/* Long implicit steps in place of substeps; costs are in evaluations of the acceleration. */
+/* Long implicit steps in place of substeps, if figures.leaps; costs are in evaluations of the
+ * acceleration. */
 typedef struct msri_leaping {
-  const msr_integrator *method; /* NULL: none */
-  double substep;               /* cost of one */
-  double least;                 /* cost of the cheapest leap */
-  double share;                 /* of the cost of all substeps that may be spent in vain */
-  double reach;                 /* how far what meets something may be from it [px] */
-  uint64_t leg;                 /* substeps: a leap lies between two multiples of it */
+  double substep;   /* cost of one */
+  uint64_t stretch; /* substeps: a leap lies between two multiples of it */
 } msri_leaping;
+
+extern const double msri_leap_least; /* cost of the cheapest leap */
+extern const double msri_leap_share; /* of the cost of all substeps that may be spent in vain */
+extern const double msri_leap_reach; /* how far what meets something may be from it [px] */
 
 struct msr_plan {
   msr_plan_figures figures;
@@ -86,6 +87,13 @@ static inline bool msri_force_is_outer(const msr_force *force) {
   return force->conservative && force != &msr_force_springs;
 }
 
+/* Does anything depend on v? */
+static inline bool msri_plan_damps(const msr_plan *plan) {
+  for (size_t i = 0; i < plan->n_terms; i++)
+    if (plan->term[i].force->uses_velocity) return true;
+  return false;
+}
+
 /* May anything ever be in the way? */
 static inline bool msri_plan_meets(const msr_plan *plan) {
   return plan->contact.drift || plan->discs;
@@ -124,6 +132,11 @@ static inline double msri_plan_time(const msr_plan_figures *f, uint64_t iteratio
   return (double)iteration * f->dt + (double)substep * f->h;
 }
 
+/* Terms, contacts and effects that the scene calls for at its start. MSR_ENOMEM, what
+ * force->prepare returns. */
+msr_status msri_plan_call_for_effects(msr_plan *plan, const msr_scene *scene, const msr_view *start,
+                                      msr_error *err);
+
 /* Start of every mass. x, y, vx, vy [masses]. */
 void msri_plan_start(const msr_plan *plan, double *x, double *y, double *vx, double *vy);
 
@@ -132,6 +145,9 @@ void msri_plan_colours(const msr_plan *plan, unsigned char *rgb);
 
 /* A view of the plan's masses with the arrays q = x[n], y[n] and v = vx[n], vy[n] (may be NULL). */
 msr_view msri_plan_view(const msr_plan *plan, double t, const double *q, const double *v);
+
+/* Kinetic energy. */
+double msri_kinetic(const msr_view *s);
 
 /* "pixel (12,5)" or "mass 7": what a user calls a mass. Returns text. */
 const char *msri_plan_mass_name(const msr_plan *plan, size_t mass, char *text, size_t size);

@@ -9,8 +9,6 @@
 
 const double msri_midpoint_limit = 2;
 
-static const double most_substeps = 1e9;
-
 /* The integrator's limit of h gamma for a force. */
 static double damping_limit(const msr_integrator *integrator, const msr_force *force) {
   const double limit = integrator->damping_stability;
@@ -130,7 +128,7 @@ msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t
   const double needed = f->stable_step > 0 ? fewest(f) : 1;
   const bool any = isinf(f->stable_step);
   const double largest = any ? f->safe_step : f->stable_step;
-  if (substeps == 0 && needed > most_substeps)
+  if (substeps == 0 && needed > MSRI_MOST_SUBSTEPS)
     return msri_fail(err, MSR_EINPUT,
                      "DT %g s is %g times the largest %s step, %g s; lower DT or TENSION_RESSORT, "
                      "or raise MASSE",

@@ -51,6 +51,13 @@ msr_view msri_plan_view(const msr_plan *plan, double t, const double *q, const d
   };
 }
 
+double msri_kinetic(const msr_view *s) {
+  double sum = 0;
+  for (size_t i = 0; i < s->n; i++)
+    sum += msr_view_mass(s, i) * (s->vx[i] * s->vx[i] + s->vy[i] * s->vy[i]);
+  return sum / 2;
+}
+
 /* The pixel of the n-th mass of the picture. */
 bool msr_plan_pixel(const msr_plan *plan, size_t mass, size_t *column, size_t *row) {
   if (mass >= plan->n_picture) return false;

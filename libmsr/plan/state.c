@@ -12,16 +12,41 @@
 /* Of the arrays: a line of the cache and the widest vector, else loads straddle two lines. */
 enum { ALIGNMENT = 64 };
 
+/* Where arrays for implicit steps lie. */
+typedef struct room {
+  size_t solver, between, before_leap, leap;
+} room;
+
 /* Where each array lies after the block's first aligned byte; `end` is after the last. */
 typedef struct layout {
-  size_t solver, q, v, work, before, owed, ahead, middle, between, drive, discs, scratch, calls,
-      before_leap, leap, kept, end;
+  room room;
+  size_t q, v, work, before, owed, ahead, middle, drive, discs, scratch, calls, kept, end;
 } layout;
 
 static size_t reserve(size_t *end, size_t bytes) {
   const size_t begin = *end;
-  *end = (begin + bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+  *end = msri_round_up(begin + bytes, ALIGNMENT);
   return begin;
+}
+
+/* The matrix if there is a graph, and what steps take that aren't the plan's own if it `leaps`. */
+static room lay_out_room(const msr_plan *plan, const msri_graph *graph, bool leaps, size_t *end) {
+  const size_t vector = 2 * plan->figures.masses * sizeof(double);
+  const size_t anchors = plan->mesh.springs.n_anchors;
+  room r;
+  r.solver = reserve(end, graph ? msri_stiffness_bytes(graph, anchors, plan->m != NULL) : 0);
+  r.between = reserve(end, leaps || plan->middle ? 2 * vector : 0);
+  r.before_leap = reserve(end, leaps ? 2 * vector : 0);
+  r.leap = reserve(end, leaps ? msr_integrator_energy_momentum.vectors * vector : 0);
+  return r;
+}
+
+static void place_room(msr_state *state, const room *r, const msri_graph *graph, char *arrays) {
+  const msr_view now = msr_state_view(state);
+  state->between = (void *)(arrays + r->between);
+  state->leap.before = (void *)(arrays + r->before_leap);
+  state->leap.vector = (void *)(arrays + r->leap);
+  if (graph) state->stiffness = msri_stiffness_place(graph, &now, arrays + r->solver);
 }
 
 static layout lay_out(const msr_plan *plan) {
@@ -30,10 +55,7 @@ static layout lay_out(const msr_plan *plan) {
   layout l;
   size_t end = 0;
   reserve(&end, sizeof(msr_state));
-  l.solver =
-      reserve(&end, plan->graph ? msri_stiffness_bytes(plan->graph, plan->mesh.springs.n_anchors,
-                                                       plan->m != NULL)
-                                : 0);
+  l.room = lay_out_room(plan, plan->graph, plan->figures.leaps, &end);
   l.q = reserve(&end, vector);
   l.v = reserve(&end, vector);
   l.work = reserve(&end, (vectors > 0 ? vectors : 1) * vector);
@@ -41,12 +63,9 @@ static layout lay_out(const msr_plan *plan) {
   l.owed = reserve(&end, msri_plan_settles(plan) ? vector : 0);
   l.ahead = reserve(&end, msri_plan_settles(plan) ? vector : 0);
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
-  l.between = reserve(&end, plan->middle ? 2 * vector : 0);
   l.drive = reserve(&end, plan->followed ? vector : 0);
   l.discs = reserve(&end, plan->discs ? msri_discs_room(plan->discs) : 0);
   l.scratch = reserve(&end, plan->scratch_bytes);
-  l.before_leap = reserve(&end, plan->leaping.method ? 2 * vector : 0);
-  l.leap = reserve(&end, plan->leaping.method ? plan->leaping.method->vectors * vector : 0);
   l.kept = reserve(&end, plan->cares ? 2 * vector : 0);
   l.calls = reserve(&end, plan->n_effects * sizeof(uint64_t));
   l.end = end;
@@ -64,6 +83,13 @@ static char *first_aligned(char *block) {
   return block + (ALIGNMENT - (uintptr_t)block % ALIGNMENT) % ALIGNMENT;
 }
 
+static msr_status open_integrator(msr_state *state, msr_error *err) {
+  const msr_integrator *integrator = state->plan->figures.integrator;
+  const msr_system system = msri_state_system(state);
+  return integrator->open ? integrator->open(integrator, &system, &state->work.object, err)
+                          : MSR_OK;
+}
+
 msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *err) {
   const layout l = lay_out(plan);
   char *block = msri_alloc(1, block_bytes(&l), "a state", err);
@@ -78,10 +104,8 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .before = (void *)(arrays + l.before),
       .owed = msri_plan_settles(plan) ? (void *)(arrays + l.owed) : NULL,
       .ahead = (void *)(arrays + l.ahead),
-      .leap = {.before = (void *)(arrays + l.before_leap), .vector = (void *)(arrays + l.leap)},
       .care = {.kept = (void *)(arrays + l.kept)},
       .middle = (void *)(arrays + l.middle),
-      .between = (void *)(arrays + l.between),
       .drive = (void *)(arrays + l.drive),
       .discs = arrays + l.discs,
       .scratch = arrays + l.scratch,
@@ -89,45 +113,29 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
   };
   const size_t n = plan->figures.masses;
   msri_plan_start(plan, made->q, made->q + n, made->v, made->v + n);
-  if (plan->graph) {
-    const msr_view start = msr_state_view(made);
-    made->stiffness = msri_stiffness_place(plan->graph, &start, arrays + l.solver);
-  }
-  const msr_integrator *integrator = plan->figures.integrator;
-  if (integrator->open) {
-    const msr_system system = msri_state_system(made);
-    const msr_status status = integrator->open(integrator, &system, &made->work.object, err);
-    if (status != MSR_OK) {
-      free(made);
-      return status;
-    }
-  }
-  *state = made;
-  return MSR_OK;
+  place_room(made, &l.room, plan->graph, arrays);
+  const msr_status status = open_integrator(made, err);
+  if (status == MSR_OK)
+    *state = made;
+  else
+    free(made);
+  return status;
 }
 
 msr_status msri_state_make_room(msr_state *state, msr_error *err) {
   const msr_plan *plan = state->plan;
-  const size_t n = plan->figures.masses, vector = 2 * n * sizeof(double);
-  const size_t vectors = msr_integrator_energy_momentum.vectors;
-  if (plan->graph || state->care.memory) return MSR_OK;
-  if (!state->care.graph) { /* else what came after it has failed before */
-    const msr_status status = msri_graph_create(n, &plan->mesh.springs, &state->care.graph, err);
+  msri_care *care = &state->care;
+  if (plan->graph || care->memory) return MSR_OK;
+  if (!care->graph) { /* else what came after it has failed before */
+    const msr_status status =
+        msri_graph_create(plan->figures.masses, &plan->mesh.springs, &care->graph, err);
     if (status != MSR_OK) return status;
   }
   size_t end = 0;
-  const size_t leap = reserve(&end, 2 * vector), work = reserve(&end, vectors * vector);
-  const size_t between = reserve(&end, 2 * vector);
-  const size_t solver = reserve(
-      &end, msri_stiffness_bytes(state->care.graph, plan->mesh.springs.n_anchors, plan->m != NULL));
-  state->care.memory = msri_alloc(1, end + ALIGNMENT, "steps with care", err);
-  if (!state->care.memory) return MSR_ENOMEM;
-  char *arrays = first_aligned(state->care.memory);
-  const msr_view now = msr_state_view(state);
-  state->leap.before = (void *)(arrays + leap);
-  state->leap.vector = (void *)(arrays + work);
-  state->between = (void *)(arrays + between);
-  state->stiffness = msri_stiffness_place(state->care.graph, &now, arrays + solver);
+  const room r = lay_out_room(plan, care->graph, true, &end);
+  care->memory = msri_alloc(1, end + ALIGNMENT, "steps with care", err);
+  if (!care->memory) return MSR_ENOMEM;
+  place_room(state, &r, care->graph, first_aligned(care->memory));
   return MSR_OK;
 }
 
@@ -231,16 +239,9 @@ uint64_t msr_state_calls(const msr_state *state, size_t effect) {
 
 /* ---- Energy */
 
-static double kinetic(const msr_view *s) {
-  double sum = 0;
-  for (size_t i = 0; i < s->n; i++)
-    sum += msr_view_mass(s, i) * (s->vx[i] * s->vx[i] + s->vy[i] * s->vy[i]);
-  return sum / 2;
-}
-
 msr_energy msri_state_energies(const msr_state *state) {
   const msr_view s = msr_state_view(state);
-  msr_energy e = {.kinetic = kinetic(&s)};
+  msr_energy e = {.kinetic = msri_kinetic(&s)};
   e.total = e.kinetic;
   for (size_t i = 0; i < state->plan->n_terms; i++) {
     const msri_term *term = &state->plan->term[i];

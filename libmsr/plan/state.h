@@ -71,7 +71,7 @@ struct msr_state {
   double end; /* of the step under way [s] */
   msri_effort effort;
   msri_care care;
-  msri_leap_memory leap;    /* if plan->leaping.method */
+  msri_leap_memory leap;    /* if figures.leaps */
   double *middle;           /* [4n] if plan->midpoint: force, velocity */
   double *between;          /* [4n] if plan->middle: the middle, force */
   double *drive;            /* [2n] if plan->followed: driving forces */

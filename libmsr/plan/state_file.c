@@ -10,10 +10,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A msri_guard in whole words. */
+/* The numbers of a msri_guard, and all of it in whole words. */
+#define NUMBERS(X)      X(energy) X(slack) X(gravity) X(outer) X(lost) X(work) X(gain) X(power) X(most)
+#define DECLARE(number) double number;
+#define COPY(number)    .number = from->number,
 typedef struct record {
   uint64_t begun, looked;
-  double energy, slack, gravity, outer, lost, work, gain, power, most;
+  NUMBERS(DECLARE)
 } record;
 
 typedef struct header {
@@ -31,24 +34,13 @@ typedef struct header {
 static const char magic[8] = "msrstat2";
 static const uint64_t byte_order = 0x0102030405060708U;
 
-static record record_of(const msri_guard *g) {
-  return (record){g->begun, g->looked, g->energy, g->slack, g->gravity, g->outer,
-                  g->lost,  g->work,   g->gain,   g->power, g->most};
+static record record_of(const msri_guard *from) {
+  return (record){.begun = from->begun, .looked = from->looked, NUMBERS(COPY)};
 }
 
-static msri_guard guard_of(const record *r) {
-  return (msri_guard){.begun = r->begun != 0,
-                      .energy = r->energy,
-                      .stale = true,
-                      .slack = r->slack,
-                      .gravity = r->gravity,
-                      .outer = r->outer,
-                      .lost = r->lost,
-                      .work = r->work,
-                      .gain = r->gain,
-                      .power = r->power,
-                      .most = r->most,
-                      .looked = r->looked};
+static msri_guard guard_of(const record *from) {
+  return (msri_guard){
+      .begun = from->begun != 0, .stale = true, .looked = from->looked, NUMBERS(COPY)};
 }
 
 /* The arrays of a state in a file, of vector bytes each. */

@@ -97,9 +97,7 @@ static void advise_quarter(const msr_plan_figures *f, const char *before, char *
  * they don't come back. */
 static bool creeps(const msr_plan *plan) {
   const msr_integrator *method = plan->figures.integrator;
-  bool damps = false;
-  for (size_t i = 0; i < plan->n_terms; i++) damps |= plan->term[i].force->uses_velocity;
-  return damps && method->splits && method->order == 1;
+  return msri_plan_damps(plan) && method->splits && method->order == 1;
 }
 
 /* What to do: a step that is stable. */

@@ -11,7 +11,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 enum { MOST_IMPACTS = 4, FEW_STEPS = 4, MOST_TRIES = 20 };
 
@@ -21,12 +20,6 @@ typedef struct leg {
   const msr_system *system;
   double t, h, end;
 } leg;
-
-void msri_keep_before(msr_state *state) {
-  const size_t n = 2 * state->plan->figures.masses;
-  memcpy(state->before, state->q, n * sizeof *state->q);
-  memcpy(state->before + n, state->v, n * sizeof *state->v);
-}
 
 msr_status msri_bounce(msr_state *state, double h) {
   const double *q0 = state->before, *v0 = q0 + 2 * state->plan->figures.masses;
@@ -42,11 +35,7 @@ static msr_status go(const leg *l, double h, msr_error *err) {
 }
 
 static msr_status go_again(const leg *l, double h, msr_error *err) {
-  msr_state *state = l->state;
-  const size_t n = l->system->n;
-  memcpy(state->q, state->before, n * sizeof *state->q);
-  memcpy(state->v, state->before + n, n * sizeof *state->v);
-  state->fresh = false;
+  msri_state_put_back(l->state, l->state->before);
   return go(l, h, err);
 }
 
@@ -91,7 +80,7 @@ msr_status msri_step_by_impacts(msr_state *state, const msr_system *system,
   for (int impacts = 0;; impacts++) {
     msri_meeting m;
     double s = 0;
-    msri_keep_before(state);
+    msri_state_keep(state, state->before);
     msr_status status = go(&l, l.h, err);
     if (status != MSR_OK) return status;
     msri_state_meet(state, l.h, &m);

@@ -4,9 +4,6 @@
 
 #include "plan/state.h"
 
-/* Keeps q and v in state->before. */
-void msri_keep_before(msr_state *state);
-
 /* Stops and reflects what met something in a step of h from state->before. */
 msr_status msri_bounce(msr_state *state, double h);
 

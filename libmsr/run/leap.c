@@ -1,15 +1,16 @@
 /* leap.c - long implicit steps in place of many substeps, where they cost less.
  *
- * A leg, an iteration or a part of it, is first tried as one step of the energy-momentum method,
- * which keeps the energy through elastic impacts at any length. What fails is tried again at half
- * its length; substeps do what is left. Costs are counted, in evaluations of the acceleration,
- * never timed: tries may spend a quarter of what the substeps of the leg would cost, and what leaps
- * have saved of that so far. So a leg costs at most 1.25 times as much as its substeps.
+ * A stretch, an iteration or a part of it, is first tried as one step of the energy-momentum
+ * method, which keeps the energy through elastic impacts at any length. What fails is tried again
+ * at half its length; substeps do what is left. Costs are counted, in evaluations of the
+ * acceleration, never timed: tries may spend a quarter of what the substeps of the stretch would
+ * cost, and what leaps have saved of that so far. So a stretch costs at most 1.25 times as much as
+ * its substeps.
  *
- * With care (see care.c) a leg is a few substeps, and takes what it costs.
+ * With care (see care.c) a stretch is a few substeps, and takes what it costs.
  *
- * Nothing is remembered from one leg to the next, so that a run that is cut or saved has the same
- * bits. */
+ * Nothing is remembered from one stretch to the next, so that a run that is cut or saved has the
+ * same bits. */
 #include "run/leap.h"
 
 #include "forces/mesh.h"
@@ -70,7 +71,7 @@ static msr_status take_halves(course *c, const msr_interval *whole, int times) {
 /* With care the last try is one that can be made. */
 static msr_status try_any(course *c, bool *made) {
   const msr_interval interval = interval_of(c);
-  if (!c->state->care.on || c->length > 1) return try(c, &interval, c->plan->reach, made);
+  if (!c->state->care.on || c->length > 1) return try(c, &interval, msri_leap_reach, made);
   *made = true;
   return take_halves(c, &interval, MOST_HALVES);
 }
@@ -93,12 +94,12 @@ static msr_status land(course *c) {
 /* Is a leap of that length worth a try? */
 static bool pays(const course *c) {
   if (c->state->care.on) return c->length > 0;
-  return c->credit > 0 && c->plan->substep * (double)c->length > c->plan->least;
+  return c->credit > 0 && c->plan->substep * (double)c->length > msri_leap_least;
 }
 
-/* Would springs buckle many times over, in a leg of h? Stiff ones that vibrate do: an implicit step
- * has to follow them, and costs more than all substeps (measured: leaps pay up to 4, and at 20 they
- * don't, whatever the stiffness). */
+/* Would springs buckle many times over, in a stretch of h? Stiff ones that vibrate do: an implicit
+ * step has to follow them, and costs more than all substeps (measured: leaps pay up to 4, and at 20
+ * they don't, whatever the stiffness). */
 static bool vibrates(const msr_state *state, double h) {
   static const double most = 8;
   const msr_view view = msr_state_view(state);
@@ -108,11 +109,11 @@ static bool vibrates(const msr_state *state, double h) {
 msr_status msri_leap(msr_state *state, const msr_system *system, const msri_poll *poll) {
   const msri_leaping *plan = &state->plan->leaping;
   const uint64_t left = state->plan->figures.substeps - state->substep;
-  const uint64_t most = state->care.on ? CAREFUL : plan->leg;
-  const uint64_t leg = left < most ? left : most, end = state->substep + leg;
-  const double credit = plan->share * plan->substep * (double)leg;
-  course c = {state, system, plan, leg, state->care.on ? (double)INFINITY : credit};
-  if (!state->care.on && vibrates(state, (double)leg * state->plan->figures.h)) return MSR_OK;
+  const uint64_t most = state->care.on ? CAREFUL : plan->stretch;
+  const uint64_t stretch = left < most ? left : most, end = state->substep + stretch;
+  const double credit = msri_leap_share * plan->substep * (double)stretch;
+  course c = {state, system, plan, stretch, state->care.on ? (double)INFINITY : credit};
+  if (!state->care.on && vibrates(state, (double)stretch * state->plan->figures.h)) return MSR_OK;
   msr_status status = poll->call ? poll->call(poll->data, state) : MSR_OK;
   while (state->substep < end && status == MSR_OK) {
     bool made;

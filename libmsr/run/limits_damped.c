@@ -15,12 +15,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool damps(const msr_plan *plan) {
-  for (size_t i = 0; i < plan->n_terms; i++)
-    if (plan->term[i].force->uses_velocity) return true;
-  return false;
-}
-
 /* c[2n] = what depends on v at v = 0, less what it is at v = u. */
 static msr_status probe(const msri_start *s, char *scratch, const double *u, double *c) {
   const size_t n = s->view.n;
@@ -52,18 +46,12 @@ static double weigh(const msri_start *s, bool up, double *a) {
   return largest;
 }
 
-static double dot(size_t n, const double *a, const double *b) {
-  double sum = 0;
-  for (size_t i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 /* Is c = steady M u + growing k, with k = K u? By least squares in the norm of M^-1. */
 static bool fits(const msri_start *s, double *u, double *k, double *c, msri_swings *swings) {
   const size_t n = 2 * s->view.n;
   const double of_u = weigh(s, true, u), of_k = weigh(s, false, k), of_c = weigh(s, false, c);
-  const double uu = dot(n, u, u), uk = dot(n, u, k), kk = dot(n, k, k);
-  const double uc = dot(n, u, c), kc = dot(n, k, c), cc = dot(n, c, c);
+  const double uu = msri_dot(n, u, u), uk = msri_dot(n, u, k), kk = msri_dot(n, k, k);
+  const double uc = msri_dot(n, u, c), kc = msri_dot(n, k, c), cc = msri_dot(n, c, c);
   const double det = uu * kk - uk * uk;
   if (!(uu > 0)) return false;
   const bool independent = det > 1e-9 * uu * kk;
@@ -73,7 +61,7 @@ static bool fits(const msri_start *s, double *u, double *k, double *c, msri_swin
   const double rounding = 1e-8, most = msri_max(fabs(steady), fabs(growing));
   swings->steady = fabs(steady) > rounding * most ? steady * (of_c / of_u) : 0;
   swings->growing = fabs(growing) > rounding * most ? growing * (of_c / of_k) : 0;
-  return dot(n, c, c) <= rounding * rounding * cc;
+  return msri_dot(n, c, c) <= rounding * rounding * cc;
 }
 
 static msr_status is_known(const msri_start *s, msri_swings *swings, bool *known) {
@@ -116,7 +104,7 @@ static double segment(const msri_start *s, double omega) {
 
 msr_status msri_limits_damp(const msri_start *s, msr_limit *limit, msr_error *err) {
   const msr_integrator *method = s->plan->figures.integrator;
-  if (!damps(s->plan)) return MSR_OK;
+  if (!msri_plan_damps(s->plan)) return MSR_OK;
   msri_swings swings = {.omega = limit->omega};
   bool known = false;
   double step = method->splits ? segment(s, limit->omega) : limit->step;

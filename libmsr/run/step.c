@@ -71,7 +71,7 @@ msr_status msri_step_once(msr_state *state, const msr_system *system, const msr_
 /* A step as if nothing were in the way, then what was. */
 static msr_status step_and_bounce(msr_state *state, const msr_system *system,
                                   const msr_interval *interval, msr_error *err) {
-  msri_keep_before(state);
+  msri_state_keep(state, state->before);
   const msr_status status = msri_step_once(state, system, interval, err);
   return status == MSR_OK ? msri_bounce(state, interval->h) : status;
 }

@@ -39,12 +39,6 @@ static double largest_of(const tridiagonal *T) {
   return low;
 }
 
-static double dot(size_t n, const double *x, const double *y) {
-  double sum = 0;
-  for (size_t i = 0; i < n; i++) sum += x[i] * y[i];
-  return sum;
-}
-
 /* By SplitMix64 (Steele, Lea & Flood 2014). */
 void msri_fill_at_random(size_t n, double *x) {
   for (size_t i = 0; i < n; i++) {
@@ -70,14 +64,14 @@ msr_status msri_lanczos_largest(const msri_symmetric *A, double *value, int *ite
   double *q = block, *r = block + n, *before = block + 2 * n, grown[MOST + 1] = {0};
   tridiagonal T = {0};
   msri_fill_at_random(n, q);
-  msri_scale(n, 1 / sqrt(dot(n, q, q)), q);
+  msri_scale(n, 1 / sqrt(msri_dot(n, q, q)), q);
   for (bool done = n == 0; !done;) {
     double *const b = &T.b[T.n];
     A->apply(A->self, q, r);
     if (T.n > 0) msri_add_scaled(n, -T.b[T.n - 1], before, r);
-    T.a[T.n++] = dot(n, r, q);
+    T.a[T.n++] = msri_dot(n, r, q);
     msri_add_scaled(n, -T.a[T.n - 1], q, r);
-    *b = sqrt(dot(n, r, r));
+    *b = sqrt(msri_dot(n, r, r));
     grown[T.n] = msri_max(0, largest_of(&T));
     done = *b < 1e-10 || T.n == MOST || settled(T.n, grown);
     if (!done) msri_scale(n, 1 / *b, r);
