@@ -23,7 +23,7 @@ struct msri_discs {
   msri_ties ties;
 };
 
-enum { ALIGNMENT = 16, MOST_PASSES = 12, MOST_LISTS = 6, MOST_JOINS = 64 };
+enum { ALIGNMENT = 16, MOST_PASSES = 12, REST_PASSES = 6, MOST_LISTS = 6, MOST_JOINS = 64 };
 
 /* Discs that overlap part at so many diameters a second, by no more than a share of one in a step.
  */
@@ -85,11 +85,27 @@ static double longest_way(size_t n, const double *from, const double *to) {
 
 /* ---- All pairs of a list */
 
-static bool for_each_pair(course *c, bool (*act)(msri_drift *, size_t, size_t)) {
+typedef bool pair_act(msri_drift *d, size_t i, size_t j);
+
+static bool for_each(course *c, const msri_pair *pair, size_t n, pair_act *act) {
   bool any = false;
-  for (size_t k = 0; k < c->near.list->n; k++)
-    any |= act(&c->d, c->near.pair[k].i, c->near.pair[k].j);
+  for (size_t k = 0; k < n; k++) any |= act(&c->d, pair[k].i, pair[k].j);
   return any;
+}
+
+static bool for_each_pair(course *c, pair_act *act) {
+  return for_each(c, c->near.pair, c->near.list->n, act);
+}
+
+/* Those that are close enough for this step. */
+static bool for_each_close(course *c, pair_act *act) {
+  return for_each(c, c->near.close, c->near.list->n_close, act);
+}
+
+static bool is_any(course *c, pair_act *act) {
+  for (size_t k = 0; k < c->near.list->n; k++)
+    if (act(&c->d, c->near.pair[k].i, c->near.pair[k].j)) return true;
+  return false;
 }
 
 static bool meets(msri_drift *d, size_t i, size_t j) {
@@ -97,11 +113,20 @@ static bool meets(msri_drift *d, size_t i, size_t j) {
   return msri_disc_pair_meets(&p);
 }
 
+/* Did they overlap by more than rounding? */
+static bool overlapped(msri_drift *d, size_t i, size_t j) {
+  const msri_vec r = msri_drift_pair(d, i, j).from;
+  const double least2 = d->diameter * d->diameter * (1 - msri_disc_rounding / 2);
+  return r.x * r.x + r.y * r.y < least2;
+}
+
 /* A few passes; was the last one idle? */
-static bool put_right(course *c) {
+static bool put_right(course *c, const msri_pair *pair, size_t n) {
   memset(c->d.pass, 0, c->d.n * sizeof *c->d.pass);
-  for (c->d.passes = 1; c->d.passes <= MOST_PASSES; c->d.passes++)
-    if (!for_each_pair(c, msri_drift_collide)) return true;
+  for (c->d.passes = 1; c->d.passes <= MOST_PASSES; c->d.passes++) {
+    c->d.since = c->d.passes - 1;
+    if (!for_each(c, pair, n, msri_drift_collide)) return true;
+  }
   return false;
 }
 
@@ -124,18 +149,24 @@ static bool list_for_pushes(course *c) {
 /* Crowds grow by every pair that meets; if there is no end to it, all are one. */
 static void join(course *c) {
   msri_drift_part(&c->d);
-  for (int joins = 0; joins < MOST_JOINS; joins++)
-    if (!for_each_pair(c, msri_drift_join)) return;
+  for (int joins = 0; joins < MOST_JOINS; joins++) {
+    c->d.since = joins > 0 ? c->d.passes++ : 0;
+    if (!for_each_close(c, msri_drift_join)) return;
+  }
   msri_drift_join_all(&c->d);
 }
 
 /* False: there are too many pairs. */
 static bool resolve_slowly(course *c) {
-  if (!for_each_pair(c, meets)) return true;
+  if (!is_any(c, c->d.parts ? overlapped : meets)) return true;
   if (!list_for_pushes(c)) return false;
-  if (put_right(c)) return true;
-  c->d.apart = 0;
-  join(c);
+  msri_near_choose(&c->near, c->d.q0, c->d.most);
+  if (!put_right(c, c->near.close, c->near.list->n_close)) {
+    c->d.apart = 0;
+    join(c);
+  }
+  for (int k = 0; c->d.rests && !c->d.parts && k < REST_PASSES; k++)
+    if (!for_each_close(c, msri_drift_rest)) break;
   return true;
 }
 
@@ -156,6 +187,7 @@ static bool list_fast(course *c) {
 
 static void join_fast(course *c) {
   msri_drift_part(&c->d);
+  c->d.since = 0;
   for (int lists = 0; lists < MOST_LISTS; lists++) {
     if (!list_fast(c)) return;
     while (for_each_pair(c, msri_drift_join)) continue;
@@ -167,7 +199,7 @@ static void resolve_fast(course *c) {
   c->d.most = (double)INFINITY;
   for (int lists = 0; lists < MOST_LISTS; lists++) {
     if (!list_fast(c)) return;
-    put_right(c);
+    put_right(c, c->near.pair, c->near.list->n);
   }
   c->d.apart = 0;
   join_fast(c);
@@ -184,6 +216,8 @@ static uint64_t collide(course *c) {
   d->most = 1.5 * longest + 2 * apart;
   if (!fast) list_for_ways(c, longest);
   fast |= c->near.list->full;
+  memset(d->held, 0, 2 * d->n);
+  d->rests = !fast && d->restitution < 1 && d->kick;
   for (int parts = 0; parts < 2; parts++) {
     d->parts = parts;
     d->apart = apart;
@@ -200,13 +234,15 @@ static size_t vector_bytes(const msri_discs *d) { return rounded(2 * d->n * size
 
 static size_t crowd_bytes(const msri_discs *d) { return rounded(3 * d->n * sizeof(uint32_t)); }
 
+static size_t held_bytes(const msri_discs *d) { return rounded(2 * d->n); }
+
 size_t msri_discs_room(const msri_discs *d) {
-  return vector_bytes(d) + crowd_bytes(d) + msri_near_bytes(d->n);
+  return vector_bytes(d) + crowd_bytes(d) + held_bytes(d) + msri_near_bytes(d->n);
 }
 
 static course begin(const msri_discs *discs, const msri_contact *supports, void *room, double h) {
-  char *const crowds = (char *)room + vector_bytes(discs), *const near =
-                                                               crowds + crowd_bytes(discs);
+  char *const crowds = (char *)room + vector_bytes(discs);
+  char *const held = crowds + crowd_bytes(discs), *const near = held + held_bytes(discs);
   return (course){.d = {.n = discs->n,
                         .m = discs->m,
                         .m_stride = discs->m_stride,
@@ -216,7 +252,8 @@ static course begin(const msri_discs *discs, const msri_contact *supports, void 
                         .h = h,
                         .crowd = (void *)crowds,
                         .next = (uint32_t *)(void *)crowds + discs->n,
-                        .pass = (uint32_t *)(void *)crowds + 2 * discs->n},
+                        .pass = (uint32_t *)(void *)crowds + 2 * discs->n,
+                        .held = (signed char *)held},
                   .near = msri_near_place(discs->n, discs->diameter, &discs->ties, near)};
 }
 
@@ -238,6 +275,7 @@ uint64_t msri_discs_drift(const msri_discs *discs, const msri_contact *supports,
   else
     for (size_t i = 0; i < 2 * d->n; i++) q[i] += h * u[i];
   d->q0 = room, d->q = q, d->v = v;
+  d->kick = a, d->unit = h;
   d->owed = supports->drift ? owed : NULL;
   return met + collide(&c);
 }
@@ -252,7 +290,7 @@ uint64_t msri_discs_bounce(const msri_discs *discs, const msri_contact *supports
   for (size_t i = 0; i < 2 * d->n; i++) kick[i] = v[i] - v0[i];
   if (supports->bounce) met = supports->bounce(supports->self, d->n, h, q0, v0, q, v, owed);
   d->q0 = q0, d->q = q, d->v = v;
-  d->kick = kick, d->behind = 0.5;
+  d->kick = kick, d->unit = 1, d->behind = 0.5;
   d->owed = supports->bounce ? owed : NULL;
   return met + collide(&c);
 }
