@@ -169,6 +169,7 @@ double msri_guard_gain(const msr_state *state, double *lost) {
   const balance b = balance_of(state, lost);
   const double loss = state->plan->conserves ? -(b.gain + state->guard.slack) : 0;
   const double gain = msri_max(b.gain, loss);
+  if (isnan(b.gain)) return (double)INFINITY;
   return gain <= 0 ? 0 : gain / b.given;
 }
 
