@@ -285,6 +285,30 @@ static void what_a_force_says_comes_back_at_once(void **unused) {
       }
 }
 
+static const msr_force driving = {.name = "refusing",
+                                  .summary = "0",
+                                  .uses_time = true,
+                                  .params_size = sizeof(refusal),
+                                  .add = refuse};
+
+/* Nor is it what the guard says of a state: asked anew after a load, before a frame. */
+static void what_a_force_says_of_a_frame_comes_back(void **unused) {
+  (void)unused;
+  int calls = 0;
+  msr_scene *scene = scene_of(room, &short_run, &(msr_scene_options){.closed_border = true});
+  add_force(scene, &driving, &(refusal){&calls, 1000});
+  world w = open_world_with(scene, &automatic);
+  throw(&w, 5);
+  advance(&w, 10); /* a frame's iteration */
+  reload(&w);
+  calls = 999;
+  assert_int_equal(msr_run(w.state, NULL, &why), MSR_EUNSTABLE);
+  assert_non_null(strstr(why.message, "refusing"));
+  assert_true(calls == 1000 && msr_state_iteration(w.state) == 10 && !careful(&w));
+  must(msr_run(w.state, NULL, &why));
+  close_world(w);
+}
+
 /* What the guard refuses is mended by care: then nothing was wrong. */
 static void nothing_is_said_of_what_was_mended(void **unused) {
   (void)unused;
@@ -332,6 +356,7 @@ int main(void) {
       cmocka_unit_test(endless_runs_go_on_until_they_are_stopped),
       cmocka_unit_test(care_goes_back_to_a_change_at_most),
       cmocka_unit_test(what_a_force_says_comes_back_at_once),
+      cmocka_unit_test(what_a_force_says_of_a_frame_comes_back),
       cmocka_unit_test(nothing_is_said_of_what_was_mended),
       cmocka_unit_test(files_of_plans_that_care_are_told_from_others),
   };

@@ -174,6 +174,7 @@ double msri_guard_gain(const msr_state *state, double *lost) {
 }
 
 msr_status msr_state_check(msr_state *state, msr_error *err) {
+  state->failed = NULL;
   const msr_status status = msri_guard_begin(state, err);
   if (status != MSR_OK) return status;
   msri_guard *guard = &state->guard;

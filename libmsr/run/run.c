@@ -30,7 +30,8 @@ static msr_status step_to(msr_state *state, uint64_t iteration, const msri_poll 
     if (status != MSR_OK) return status;
     msr_error said = {MSR_OK, ""};
     const msr_status verdict = msr_state_check(state, &said);
-    status = msri_care_watch(state, verdict == MSR_EUNSTABLE, &turned, err);
+    const bool wrong = verdict == MSR_EUNSTABLE && !state->failed; /* not a force's word */
+    status = msri_care_watch(state, wrong, &turned, err);
     if (status == MSR_OK && !turned && verdict != MSR_OK)
       return msri_fail(err, verdict, "%s", said.message);
   }
