@@ -23,7 +23,7 @@ struct msri_discs {
   msri_ties ties;
 };
 
-enum { ALIGNMENT = 16, MOST_PASSES = 12, MOST_LISTS = 6, MOST_JOINS = 64 };
+enum { ALIGNMENT = 16, MOST_PASSES = 12, REST_PASSES = 6, MOST_LISTS = 6, MOST_JOINS = 64 };
 
 /* Discs that overlap part at so many diameters a second, by no more than a share of one in a step.
  */
@@ -133,9 +133,12 @@ static void join(course *c) {
 static bool resolve_slowly(course *c) {
   if (!for_each_pair(c, meets)) return true;
   if (!list_for_pushes(c)) return false;
-  if (put_right(c)) return true;
-  c->d.apart = 0;
-  join(c);
+  if (!put_right(c)) {
+    c->d.apart = 0;
+    join(c);
+  }
+  for (int k = 0; c->d.rests && !c->d.parts && k < REST_PASSES; k++)
+    if (!for_each_pair(c, msri_drift_rest)) break;
   return true;
 }
 
@@ -184,6 +187,8 @@ static uint64_t collide(course *c) {
   d->most = 1.5 * longest + 2 * apart;
   if (!fast) list_for_ways(c, longest);
   fast |= c->near.list->full;
+  memset(d->held, 0, 2 * d->n);
+  d->rests = !fast && d->restitution < 1 && d->kick;
   for (int parts = 0; parts < 2; parts++) {
     d->parts = parts;
     d->apart = apart;
@@ -200,13 +205,15 @@ static size_t vector_bytes(const msri_discs *d) { return rounded(2 * d->n * size
 
 static size_t crowd_bytes(const msri_discs *d) { return rounded(3 * d->n * sizeof(uint32_t)); }
 
+static size_t held_bytes(const msri_discs *d) { return rounded(2 * d->n); }
+
 size_t msri_discs_room(const msri_discs *d) {
-  return vector_bytes(d) + crowd_bytes(d) + msri_near_bytes(d->n);
+  return vector_bytes(d) + crowd_bytes(d) + held_bytes(d) + msri_near_bytes(d->n);
 }
 
 static course begin(const msri_discs *discs, const msri_contact *supports, void *room, double h) {
-  char *const crowds = (char *)room + vector_bytes(discs), *const near =
-                                                               crowds + crowd_bytes(discs);
+  char *const crowds = (char *)room + vector_bytes(discs);
+  char *const held = crowds + crowd_bytes(discs), *const near = held + held_bytes(discs);
   return (course){.d = {.n = discs->n,
                         .m = discs->m,
                         .m_stride = discs->m_stride,
@@ -216,7 +223,8 @@ static course begin(const msri_discs *discs, const msri_contact *supports, void 
                         .h = h,
                         .crowd = (void *)crowds,
                         .next = (uint32_t *)(void *)crowds + discs->n,
-                        .pass = (uint32_t *)(void *)crowds + 2 * discs->n},
+                        .pass = (uint32_t *)(void *)crowds + 2 * discs->n,
+                        .held = (signed char *)held},
                   .near = msri_near_place(discs->n, discs->diameter, &discs->ties, near)};
 }
 
@@ -238,6 +246,7 @@ uint64_t msri_discs_drift(const msri_discs *discs, const msri_contact *supports,
   else
     for (size_t i = 0; i < 2 * d->n; i++) q[i] += h * u[i];
   d->q0 = room, d->q = q, d->v = v;
+  d->kick = a, d->unit = h;
   d->owed = supports->drift ? owed : NULL;
   return met + collide(&c);
 }
@@ -252,7 +261,7 @@ uint64_t msri_discs_bounce(const msri_discs *discs, const msri_contact *supports
   for (size_t i = 0; i < 2 * d->n; i++) kick[i] = v[i] - v0[i];
   if (supports->bounce) met = supports->bounce(supports->self, d->n, h, q0, v0, q, v, owed);
   d->q0 = q0, d->q = q, d->v = v;
-  d->kick = kick, d->behind = 0.5;
+  d->kick = kick, d->unit = 1, d->behind = 0.5;
   d->owed = supports->bounce ? owed : NULL;
   return met + collide(&c);
 }

@@ -40,11 +40,36 @@ static double allowed(msri_drift *d, const work *w, double f) {
 
 /* ---- One mass */
 
-/* Its velocity in the middle of the step. */
-static msri_vec velocity(const msri_drift *d, size_t i) {
-  const double *vx = d->v, *vy = vx + d->n, *kx = d->kick, *ky = kx ? kx + d->n : NULL;
-  if (!kx) return (msri_vec){vx[i], vy[i]};
-  return (msri_vec){vx[i] - d->behind * kx[i], vy[i] - d->behind * ky[i]};
+/* What forces change its velocity by in the step. */
+static msri_vec kick_of(const msri_drift *d, size_t i) {
+  if (!d->kick) return (msri_vec){0, 0};
+  return (msri_vec){d->unit * d->kick[i], d->unit * d->kick[d->n + i]};
+}
+
+/* Its velocity, `later` of a kick after v. */
+static msri_vec velocity_at(const msri_drift *d, size_t i, double later) {
+  const msri_vec kick = kick_of(d, i);
+  return (msri_vec){d->v[i] + later * kick.x, d->v[d->n + i] + later * kick.y};
+}
+
+/* In the middle of the step, and at its end. */
+static msri_vec velocity(const msri_drift *d, size_t i) { return velocity_at(d, i, -d->behind); }
+
+static msri_vec end_velocity(const msri_drift *d, size_t i) {
+  return velocity_at(d, i, 0.5 - d->behind);
+}
+
+/* The speed below which i and j would be back at each other in a few steps. */
+static double slow_speed(const msri_drift *d, size_t i, size_t j) {
+  const msri_vec a = kick_of(d, i), b = kick_of(d, j);
+  return 2 * (sqrt(a.x * a.x + a.y * a.y) + sqrt(b.x * b.x + b.y * b.y));
+}
+
+/* The factor of a change of velocity, for a contact of this speed: the slow ones first keep their
+ * energy, see msri_drift_rest. */
+static double factor(const msri_drift *d, double speed, size_t i, size_t j) {
+  const bool slow = d->rests && fabs(speed) <= slow_speed(d, i, j);
+  return (slow ? 2 : 1 + d->restitution) / d->h;
 }
 
 static msri_vec way_of(const msri_drift *d, size_t i) {
@@ -70,9 +95,13 @@ static void obstruct(msri_drift *d, size_t i) {
   work w = {0};
   if (!d->supports->stop || !d->supports->stop(d->supports->self, from, to)) return;
   const msri_vec change = {to[0] - d->q[i], to[1] - d->q[n + i]};
-  do_work(&w, msri_drift_mass(d, i), velocity(d, i), change);
-  const double f = allowed(d, &w, (1 + d->restitution) / d->h);
+  const msri_vec v = velocity(d, i);
+  do_work(&w, msri_drift_mass(d, i), v, change);
+  const double speed = fabs(change.x) > fabs(change.y) ? v.x : v.y;
+  const double f = allowed(d, &w, factor(d, speed, i, i));
   speed_up(d, i, f * change.x, f * change.y);
+  if (change.x != 0) d->held[i] = change.x > 0 ? -1 : 1;
+  if (change.y != 0) d->held[n + i] = change.y > 0 ? -1 : 1;
   d->q[i] = to[0], d->q[n + i] = to[1];
   d->pass[i] = d->passes;
 }
@@ -98,7 +127,7 @@ static void push_apart(msri_drift *d, const msri_disc_pair *p, msri_vec n, doubl
   const msri_vec vi = velocity(d, i), vj = velocity(d, j);
   const double speed = (vi.x - vj.x) * n.x + (vi.y - vj.y) * n.y, m = mj * of_j;
   const work w = {-m * speed * s, m * s * s};
-  const double f = s * allowed(d, &w, (1 + d->restitution) / d->h);
+  const double f = s * allowed(d, &w, factor(d, speed, i, j));
   const msri_vec di = way_of(d, i), dj = way_of(d, j);
   redirect(d, i, (msri_vec){di.x + s * of_i * n.x, di.y + s * of_i * n.y});
   redirect(d, j, (msri_vec){dj.x + s * of_j * n.x, dj.y + s * of_j * n.y});
@@ -117,6 +146,32 @@ bool msri_drift_collide(msri_drift *d, size_t i, size_t j) {
   push_apart(d, &p, n, s);
   obstruct(d, i);
   obstruct(d, j);
+  return true;
+}
+
+/* ---- Rest */
+
+/* Changes its velocity by (x, y), but for what leads into a support that has stopped it. */
+static void nudge(msri_drift *d, size_t i, double x, double y) {
+  const size_t n = d->n;
+  const msri_vec end = end_velocity(d, i);
+  speed_up(d, i, d->held[i] * (end.x + x) > 0 ? -end.x : x,
+           d->held[n + i] * (end.y + y) > 0 ? -end.y : y);
+}
+
+bool msri_drift_rest(msri_drift *d, size_t i, size_t j) {
+  if (d->pass[i] == 0 && d->pass[j] == 0) return false;
+  const double slow = slow_speed(d, i, j), reach = d->diameter + d->h * slow;
+  const double *x = d->q, *y = x + d->n, rx = x[j] - x[i], ry = y[j] - y[i];
+  const double r2 = rx * rx + ry * ry, r = sqrt(r2);
+  if (!(r2 > 0 && r2 <= reach * reach)) return false;
+  const msri_vec vi = end_velocity(d, i), vj = end_velocity(d, j);
+  const double speed = ((vj.x - vi.x) * rx + (vj.y - vi.y) * ry) / r;
+  if (speed == 0 || !(fabs(speed) <= slow)) return false;
+  const double mi = msri_drift_mass(d, i), mj = msri_drift_mass(d, j);
+  const double of_i = speed * mj / (mi + mj) / r, of_j = -speed * mi / (mi + mj) / r;
+  nudge(d, i, of_i * rx, of_i * ry);
+  nudge(d, j, of_j * rx, of_j * ry);
   return true;
 }
 
@@ -139,8 +194,42 @@ static msri_vec common_way(const msri_drift *d, size_t first) {
   return (msri_vec){sum.x / mass, sum.y / mass};
 }
 
+/* Is nobody of it fast against its way? */
+static bool is_slow(const msri_drift *d, size_t first, msri_vec way) {
+  size_t i = first;
+  if (!d->rests) return false;
+  do {
+    const msri_vec v = velocity(d, i);
+    const double x = v.x - way.x / d->h, y = v.y - way.y / d->h, slow = slow_speed(d, i, i);
+    if (!(x * x + y * y <= slow * slow)) return false;
+  } while ((i = d->next[i]) != first);
+  return true;
+}
+
+/* All of it go the way, and have one velocity in the end. */
+static void rest_together(msri_drift *d, size_t first, msri_vec way) {
+  msri_vec sum = {0, 0};
+  double mass = 0;
+  size_t i = first;
+  do {
+    const msri_vec v = end_velocity(d, i);
+    const double m = msri_drift_mass(d, i);
+    sum.x += m * v.x, sum.y += m * v.y, mass += m;
+  } while ((i = d->next[i]) != first);
+  if (way.x == 0 && way.y == 0) sum = way;
+  do {
+    const msri_vec v = end_velocity(d, i);
+    speed_up(d, i, sum.x / mass - v.x, sum.y / mass - v.y);
+    redirect(d, i, way);
+  } while ((i = d->next[i]) != first);
+}
+
 static void go_together(msri_drift *d, size_t first, msri_vec way) {
   work w = {0};
+  if (!d->parts && is_slow(d, first, way)) {
+    rest_together(d, first, way);
+    return;
+  }
   size_t i = first;
   do {
     const msri_vec old = way_of(d, i);

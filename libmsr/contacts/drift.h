@@ -13,14 +13,16 @@ typedef struct msri_drift {
   double diameter, restitution;
   const msri_contact *supports;
   double h;
-  const double *q0;   /* [2n]: places before */
-  double *q, *v;      /* [2n]: places after, so far */
-  const double *kick; /* [2n]: `behind` of it is what v is ahead of the velocity in the middle of
-                       * the step; NULL: nothing */
-  double behind;
-  double *owed;           /* [2n] as in contact.h; may be NULL */
-  double apart;           /* by which discs that overlap may part [px] */
-  double most;            /* how far one may be pushed [px] */
+  const double *q0;    /* [2n]: places before */
+  double *q, *v;       /* [2n]: places after, so far */
+  const double *kick;  /* [2n]: in units of 1 / `unit`, what forces change velocities by in h; NULL:
+                        * nothing */
+  double unit, behind; /* v is ahead of the velocity in the middle by that share of it */
+  bool rests;          /* slow contacts end without a relative velocity, see drift.c */
+  signed char *held;   /* [2n]: a support stopped it on its way up, 1, or down, -1 */
+  double *owed;        /* [2n] as in contact.h; may be NULL */
+  double apart;        /* by which discs that overlap may part [px] */
+  double most;         /* how far one may be pushed [px] */
   uint32_t *crowd, *next; /* [n]: the crowd that a mass is of, and the next mass of it */
   uint32_t *pass;         /* [n]: the last pass in which it was pushed */
   uint32_t passes;        /* the one under way */
@@ -43,6 +45,10 @@ static inline msri_disc_pair msri_drift_pair(const msri_drift *d, size_t i, size
 
 /* If the pair meets, puts it right. Returns whether it met. */
 bool msri_drift_collide(msri_drift *d, size_t i, size_t j);
+
+/* After all collisions: if the pair touches, and is slow, it has no normal velocity at the end of
+ * the step. Returns whether that changed anything. */
+bool msri_drift_rest(msri_drift *d, size_t i, size_t j);
 
 /* Every mass is a crowd by itself. */
 void msri_drift_part(msri_drift *d);
