@@ -65,10 +65,13 @@ static double slow_speed(const msri_drift *d, size_t i, size_t j) {
   return 2 * (sqrt(a.x * a.x + a.y * a.y) + sqrt(b.x * b.x + b.y * b.y));
 }
 
-/* The factor of a change of velocity, for a contact of this speed: the slow ones first keep their
- * energy, see msri_drift_rest. */
-static double factor(const msri_drift *d, double speed, size_t i, size_t j) {
-  const bool slow = d->rests && fabs(speed) <= slow_speed(d, i, j);
+static bool is_slow(const msri_drift *d, double speed, size_t i, size_t j) {
+  return d->rests && fabs(speed) <= slow_speed(d, i, j);
+}
+
+/* The factor of a change of velocity: slow contacts first keep their energy, see msri_drift_rest.
+ */
+static double factor(const msri_drift *d, bool slow) {
   return (slow ? 2 : 1 + d->restitution) / d->h;
 }
 
@@ -98,7 +101,7 @@ static void obstruct(msri_drift *d, size_t i) {
   const msri_vec v = velocity(d, i);
   do_work(&w, msri_drift_mass(d, i), v, change);
   const double speed = fabs(change.x) > fabs(change.y) ? v.x : v.y;
-  const double f = allowed(d, &w, factor(d, speed, i, i));
+  const double f = allowed(d, &w, factor(d, is_slow(d, speed, i, i)));
   speed_up(d, i, f * change.x, f * change.y);
   if (change.x != 0) d->held[i] = change.x > 0 ? -1 : 1;
   if (change.y != 0) d->held[n + i] = change.y > 0 ? -1 : 1;
@@ -115,6 +118,19 @@ static bool is_too_far(const msri_drift *d, size_t i, msri_vec n, double s) {
   return x * x + y * y > d->most * d->most;
 }
 
+static double approach(const msri_drift *d, const msri_disc_pair *p, msri_vec n) {
+  const msri_vec vi = velocity(d, p->i), vj = velocity(d, p->j);
+  return (vi.x - vj.x) * n.x + (vi.y - vj.y) * n.y;
+}
+
+/* How far along n the two are to go: those that are slow touch in the end, so that no gap stays
+ * between those that rest. */
+static double gap(const msri_drift *d, const msri_disc_pair *p, msri_vec n) {
+  if (!is_slow(d, approach(d, p, n), p->i, p->j)) return msri_disc_pair_gap(p);
+  const msri_vec r = p->from;
+  return msri_disc_pair_floor(p, r.x * r.x + r.y * r.y) - (r.x * n.x + r.y * n.y);
+}
+
 /* Pushes two apart by s along n, their centre of mass staying where it is; by less if one would go
  * too far. */
 static void push_apart(msri_drift *d, const msri_disc_pair *p, msri_vec n, double s) {
@@ -124,10 +140,9 @@ static void push_apart(msri_drift *d, const msri_disc_pair *p, msri_vec n, doubl
   while (s > 0 && (is_too_far(d, i, n, s * of_i) || is_too_far(d, j, n, s * of_j)))
     s = s > 1e-12 * d->diameter ? s / 2 : 0;
   if (s == 0) return;
-  const msri_vec vi = velocity(d, i), vj = velocity(d, j);
-  const double speed = (vi.x - vj.x) * n.x + (vi.y - vj.y) * n.y, m = mj * of_j;
+  const double speed = approach(d, p, n), m = mj * of_j;
   const work w = {-m * speed * s, m * s * s};
-  const double f = s * allowed(d, &w, factor(d, speed, i, j));
+  const double f = s * allowed(d, &w, factor(d, is_slow(d, speed, i, j)));
   const msri_vec di = way_of(d, i), dj = way_of(d, j);
   redirect(d, i, (msri_vec){di.x + s * of_i * n.x, di.y + s * of_i * n.y});
   redirect(d, j, (msri_vec){dj.x + s * of_j * n.x, dj.y + s * of_j * n.y});
@@ -141,7 +156,7 @@ bool msri_drift_collide(msri_drift *d, size_t i, size_t j) {
   const msri_disc_pair p = msri_drift_pair(d, i, j);
   if (!msri_disc_pair_meets(&p)) return false;
   const msri_vec n = msri_disc_pair_normal(&p, d->restitution);
-  const double s = msri_disc_pair_gap(&p) - (p.way.x * n.x + p.way.y * n.y);
+  const double s = gap(d, &p, n) - (p.way.x * n.x + p.way.y * n.y);
   if (!(s > 0)) return false;
   push_apart(d, &p, n, s);
   obstruct(d, i);
@@ -195,7 +210,7 @@ static msri_vec common_way(const msri_drift *d, size_t first) {
 }
 
 /* Is nobody of it fast against its way? */
-static bool is_slow(const msri_drift *d, size_t first, msri_vec way) {
+static bool goes_slowly(const msri_drift *d, size_t first, msri_vec way) {
   size_t i = first;
   if (!d->rests) return false;
   do {
@@ -226,7 +241,7 @@ static void rest_together(msri_drift *d, size_t first, msri_vec way) {
 
 static void go_together(msri_drift *d, size_t first, msri_vec way) {
   work w = {0};
-  if (!d->parts && is_slow(d, first, way)) {
+  if (!d->parts && goes_slowly(d, first, way)) {
     rest_together(d, first, way);
     return;
   }
