@@ -97,11 +97,20 @@ static bool meets(msri_drift *d, size_t i, size_t j) {
   return msri_disc_pair_meets(&p);
 }
 
+/* Did they overlap by more than rounding? */
+static bool overlapped(msri_drift *d, size_t i, size_t j) {
+  const msri_vec r = msri_drift_pair(d, i, j).from;
+  const double least2 = d->diameter * d->diameter * (1 - msri_disc_rounding / 2);
+  return r.x * r.x + r.y * r.y < least2;
+}
+
 /* A few passes; was the last one idle? */
 static bool put_right(course *c) {
   memset(c->d.pass, 0, c->d.n * sizeof *c->d.pass);
-  for (c->d.passes = 1; c->d.passes <= MOST_PASSES; c->d.passes++)
+  for (c->d.passes = 1; c->d.passes <= MOST_PASSES; c->d.passes++) {
+    c->d.since = c->d.passes - 1;
     if (!for_each_pair(c, msri_drift_collide)) return true;
+  }
   return false;
 }
 
@@ -124,14 +133,16 @@ static bool list_for_pushes(course *c) {
 /* Crowds grow by every pair that meets; if there is no end to it, all are one. */
 static void join(course *c) {
   msri_drift_part(&c->d);
-  for (int joins = 0; joins < MOST_JOINS; joins++)
+  for (int joins = 0; joins < MOST_JOINS; joins++) {
+    c->d.since = joins > 0 ? c->d.passes++ : 0;
     if (!for_each_pair(c, msri_drift_join)) return;
+  }
   msri_drift_join_all(&c->d);
 }
 
 /* False: there are too many pairs. */
 static bool resolve_slowly(course *c) {
-  if (!for_each_pair(c, meets)) return true;
+  if (!for_each_pair(c, c->d.parts ? overlapped : meets)) return true;
   if (!list_for_pushes(c)) return false;
   if (!put_right(c)) {
     c->d.apart = 0;
@@ -159,6 +170,7 @@ static bool list_fast(course *c) {
 
 static void join_fast(course *c) {
   msri_drift_part(&c->d);
+  c->d.since = 0;
   for (int lists = 0; lists < MOST_LISTS; lists++) {
     if (!list_fast(c)) return;
     while (for_each_pair(c, msri_drift_join)) continue;

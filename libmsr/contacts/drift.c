@@ -151,8 +151,13 @@ static void push_apart(msri_drift *d, const msri_disc_pair *p, msri_vec n, doubl
   d->collisions += speed > 0 && !d->parts;
 }
 
+/* Neither has been pushed since the pair was looked at in the last pass. */
+static bool is_as_it_was(const msri_drift *d, size_t i, size_t j) {
+  return d->pass[i] < d->since && d->pass[j] < d->since;
+}
+
 bool msri_drift_collide(msri_drift *d, size_t i, size_t j) {
-  if (d->pass[i] + 1 < d->passes && d->pass[j] + 1 < d->passes) return false; // as it was
+  if (is_as_it_was(d, i, j)) return false;
   const msri_disc_pair p = msri_drift_pair(d, i, j);
   if (!msri_disc_pair_meets(&p)) return false;
   const msri_vec n = msri_disc_pair_normal(&p, d->restitution);
@@ -276,8 +281,9 @@ static void swap_next(const msri_drift *d, size_t i, size_t j) {
 
 /* The joint crowd goes the way of its centre of mass; or, if that leads into a support, nowhere. */
 bool msri_drift_join(msri_drift *d, size_t i, size_t j) {
+  if (d->crowd[i] == d->crowd[j] || is_as_it_was(d, i, j)) return false;
   const msri_disc_pair p = msri_drift_pair(d, i, j);
-  if (d->crowd[i] == d->crowd[j] || !msri_disc_pair_meets(&p)) return false;
+  if (!msri_disc_pair_meets(&p)) return false;
   for (size_t k = j; d->crowd[k] != d->crowd[i]; k = d->next[k]) d->crowd[k] = d->crowd[i];
   swap_next(d, i, j);
   go_together(d, i, common_way(d, i));

@@ -26,6 +26,7 @@ typedef struct msri_drift {
   uint32_t *crowd, *next; /* [n]: the crowd that a mass is of, and the next mass of it */
   uint32_t *pass;         /* [n]: the last pass in which it was pushed */
   uint32_t passes;        /* the one under way */
+  uint32_t since;         /* pairs that weren't pushed since this one are as they were */
   bool parts;             /* it only moves apart discs that overlap: velocities are left alone */
   double lost;            /* kinetic energy, in collisions of this drift */
   uint64_t collisions;
