@@ -85,11 +85,27 @@ static double longest_way(size_t n, const double *from, const double *to) {
 
 /* ---- All pairs of a list */
 
-static bool for_each_pair(course *c, bool (*act)(msri_drift *, size_t, size_t)) {
+typedef bool pair_act(msri_drift *d, size_t i, size_t j);
+
+static bool for_each(course *c, const msri_pair *pair, size_t n, pair_act *act) {
   bool any = false;
-  for (size_t k = 0; k < c->near.list->n; k++)
-    any |= act(&c->d, c->near.pair[k].i, c->near.pair[k].j);
+  for (size_t k = 0; k < n; k++) any |= act(&c->d, pair[k].i, pair[k].j);
   return any;
+}
+
+static bool for_each_pair(course *c, pair_act *act) {
+  return for_each(c, c->near.pair, c->near.list->n, act);
+}
+
+/* Those that are close enough for this step. */
+static bool for_each_close(course *c, pair_act *act) {
+  return for_each(c, c->near.close, c->near.list->n_close, act);
+}
+
+static bool is_any(course *c, pair_act *act) {
+  for (size_t k = 0; k < c->near.list->n; k++)
+    if (act(&c->d, c->near.pair[k].i, c->near.pair[k].j)) return true;
+  return false;
 }
 
 static bool meets(msri_drift *d, size_t i, size_t j) {
@@ -105,11 +121,11 @@ static bool overlapped(msri_drift *d, size_t i, size_t j) {
 }
 
 /* A few passes; was the last one idle? */
-static bool put_right(course *c) {
+static bool put_right(course *c, const msri_pair *pair, size_t n) {
   memset(c->d.pass, 0, c->d.n * sizeof *c->d.pass);
   for (c->d.passes = 1; c->d.passes <= MOST_PASSES; c->d.passes++) {
     c->d.since = c->d.passes - 1;
-    if (!for_each_pair(c, msri_drift_collide)) return true;
+    if (!for_each(c, pair, n, msri_drift_collide)) return true;
   }
   return false;
 }
@@ -135,21 +151,22 @@ static void join(course *c) {
   msri_drift_part(&c->d);
   for (int joins = 0; joins < MOST_JOINS; joins++) {
     c->d.since = joins > 0 ? c->d.passes++ : 0;
-    if (!for_each_pair(c, msri_drift_join)) return;
+    if (!for_each_close(c, msri_drift_join)) return;
   }
   msri_drift_join_all(&c->d);
 }
 
 /* False: there are too many pairs. */
 static bool resolve_slowly(course *c) {
-  if (!for_each_pair(c, c->d.parts ? overlapped : meets)) return true;
+  if (!is_any(c, c->d.parts ? overlapped : meets)) return true;
   if (!list_for_pushes(c)) return false;
-  if (!put_right(c)) {
+  msri_near_choose(&c->near, c->d.q0, c->d.most);
+  if (!put_right(c, c->near.close, c->near.list->n_close)) {
     c->d.apart = 0;
     join(c);
   }
   for (int k = 0; c->d.rests && !c->d.parts && k < REST_PASSES; k++)
-    if (!for_each_pair(c, msri_drift_rest)) break;
+    if (!for_each_close(c, msri_drift_rest)) break;
   return true;
 }
 
@@ -182,7 +199,7 @@ static void resolve_fast(course *c) {
   c->d.most = (double)INFINITY;
   for (int lists = 0; lists < MOST_LISTS; lists++) {
     if (!list_fast(c)) return;
-    put_right(c);
+    put_right(c, c->near.pair, c->near.list->n);
   }
   c->d.apart = 0;
   join_fast(c);

@@ -39,6 +39,7 @@ static msri_near place(size_t n, char *block, size_t *end) {
   near.list = part(block, end, sizeof *near.list);
   near.at = part(block, end, 2 * n * sizeof *near.at);
   near.pair = part(block, end, near.capacity * sizeof *near.pair);
+  near.close = part(block, end, near.capacity * sizeof *near.close);
   near.bucket = part(block, end, (near.buckets + 1) * sizeof *near.bucket);
   near.sorted = part(block, end, n * sizeof *near.sorted);
   near.set = part(block, end, n * sizeof *near.set);
@@ -183,6 +184,17 @@ void msri_near_list_at(msri_near *near, const double *q, double skin) {
   }
   memcpy(near->at, q, 2 * near->n * sizeof *q);
   near->list->valid = !near->list->full;
+}
+
+void msri_near_choose(msri_near *near, const double *q, double most) {
+  const double *x = q, *y = q + near->n, reach = (near->diameter + 2 * most) * (1 + 1e-9);
+  size_t n = 0;
+  for (size_t k = 0; k < near->list->n; k++) {
+    const msri_pair p = near->pair[k];
+    near->close[n] = p;
+    n += squared(x[p.j] - x[p.i], y[p.j] - y[p.i]) <= reach * reach;
+  }
+  near->list->n_close = n;
 }
 
 /* ---- Fast ways */

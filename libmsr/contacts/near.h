@@ -17,7 +17,7 @@ typedef struct msri_pair {
 typedef struct msri_near_list {
   bool valid;
   bool full; /* there are more pairs than there is room for */
-  size_t n;
+  size_t n, n_close;
   double skin; /* pairs closer than the diameter and twice this are listed [px] */
 } msri_near_list;
 
@@ -31,6 +31,7 @@ typedef struct msri_near {
   msri_near_list *list;
   double *at;       /* [2n]: where masses were */
   msri_pair *pair;  /* [capacity]; in ascending order */
+  msri_pair *close; /* [capacity]; some of them */
   uint32_t *bucket; /* [buckets + 1]: where it begins in sorted */
   uint32_t *sorted; /* [n] */
   uint32_t *set;    /* [n] */
@@ -52,6 +53,9 @@ msri_near msri_near_place(size_t n, double diameter, const msri_ties *ties, void
 /* Lists all pairs within reach, masses being at q [2n]: none is missing for straight ways that
  * begin and end within the skin of q. */
 void msri_near_list_at(msri_near *near, const double *q, double skin);
+
+/* Chooses from the list those pairs that may meet in ways no longer than `most` from q [2n]. */
+void msri_near_choose(msri_near *near, const double *q, double most);
 
 /* Makes a list, which won't last, of those pairs that `meet`, on ways of any length: those shorter
  * than `slow` are found as pairs that rest. */
