@@ -380,6 +380,75 @@ static void coincident_discs_part(void **unused) {
   close_world(w);
 }
 
+/* Overlapping discs that fly together part, also while another one flies past so fast that ways are
+ * searched: nobody's speed changes by a bit. */
+static void parting_changes_no_speed(void **unused) {
+  (void)unused;
+  for (int fast = 0; fast < 2; fast++) {
+    msr_scene *scene = discs(0.01, 1, 0.5);
+    uint64_t dice = 8;
+    for (size_t i = 0; i < 12; i++)
+      add_mass(scene, uniform(&dice, 0, 2), uniform(&dice, 0, 2), 3, -1, 1 + (double)(i % 3));
+    add_mass(scene, 0, 100, fast ? 1e4 : 3, -1, 1);
+    const world w = open_world(scene, NULL, 1);
+    advance(&w, 3000);
+    const msr_view s = msr_state_view(w.state);
+    for (size_t i = 0; i < s.n; i++)
+      assert_true(s.vx[i] == (fast && i == 12 ? 1e4 : 3) && s.vy[i] == -1);
+    if (!(least_gap(&s, 1) >= 1 - rounding)) fail_msg("%.17g px", least_gap(&s, 1));
+    close_world(w);
+  }
+}
+
+/* ---- Many */
+
+/* The least distance of any two, by a grid of its own: the first of each cell, and who is next in
+ * it, by place. */
+static double least_gap_of_many(const msr_view *s, size_t cells, double side) {
+  uint32_t *first = zeroed(cells * cells, sizeof *first), *next = zeroed(s->n + 1, sizeof *next);
+  double least = INFINITE;
+  for (size_t i = 0; i < s->n; i++) {
+    const size_t cx = (size_t)fmin(fmax(s->x[i] / side * (double)cells, 1), (double)cells - 2);
+    const size_t cy = (size_t)fmin(fmax(s->y[i] / side * (double)cells, 1), (double)cells - 2);
+    for (size_t around = 0; around < 9; around++) {
+      const size_t cell = (cy + around / 3 - 1) * cells + cx + around % 3 - 1;
+      for (uint32_t j = first[cell]; j > 0; j = next[j]) least = fmin(least, gap_of(s, i, j - 1));
+    }
+    next[i + 1] = first[cy * cells + cx];
+    first[cy * cells + cx] = (uint32_t)i + 1;
+  }
+  free(first);
+  free(next);
+  return least;
+}
+
+/* 10^5 loose discs, as dense as half of the plane, in a few steps of up to a third of a diameter:
+ * none overlap. */
+static void many_never_overlap(void **unused) {
+  (void)unused;
+  enum { SIDE = 316 };
+  const double apart = 1.25;
+  msr_scene *scene = discs(0.01, 1, 0.9);
+  uint64_t dice = 21;
+  for (size_t i = 0; i < SIDE * SIDE; i++) {
+    const double x = apart * ((double)(i % SIDE) + 2) + uniform(&dice, -0.12, 0.12);
+    const double y = apart * ((double)(i / SIDE) + 2) + uniform(&dice, -0.12, 0.12);
+    const double vx = uniform(&dice, -20, 20), vy = uniform(&dice, -20, 20);
+    add_mass(scene, x, y, vx, vy, 1);
+  }
+  const world w = open_world(scene, NULL, 1);
+  const double energy = moment_of(&w).kinetic;
+  const msr_view s = msr_state_view(w.state);
+  for (int step = 0; step < 4; step++) {
+    advance(&w, 1);
+    const double least = least_gap_of_many(&s, SIDE, apart * (SIDE + 4));
+    if (!(least >= 1 - rounding)) fail_msg("%.17g px after %d steps", least, step + 1);
+  }
+  assert_true(msr_state_contacts(w.state) > 100000);
+  assert_true(moment_of(&w).kinetic <= energy);
+  close_world(w);
+}
+
 /* ---- Only where they are called for */
 
 static void effect_is(msr_scene *scene, bool on, const char *reason) {
@@ -516,19 +585,37 @@ static void threads_share_a_plan(void **unused) {
   close_world(w);
 }
 
-/* Positions that a program changes are seen. */
-static void moved_discs_are_found(void **unused) {
-  (void)unused;
+/* Two that were far apart when their list was made, and are put, or come out of a file or another
+ * state, next to each other: they collide. */
+enum { EDITED, LOADED, COPIED, WAYS_TO_MOVE };
+
+static world far_apart(void) {
   msr_scene *scene = discs(0.01, 1, 1);
   for (size_t i = 0; i < 2; i++) add_mass(scene, 20 * (double)i, 0, 0, 0, 1);
-  const world w = open_world(scene, NULL, 1);
-  advance(&w, 2);
-  const msr_arrays s = msr_state_edit(w.state);
-  s.x[0] = 18.99, s.vx[0] = 5;
-  advance(&w, 2);
-  const msr_view now = msr_state_view(w.state);
-  assert_true(fabs(now.vx[0]) <= 1e-12 && fabs(now.vx[1] - 5) <= 1e-12);
-  close_world(w);
+  return open_world(scene, NULL, 1);
+}
+
+static void moved_discs_are_found(void **unused) {
+  (void)unused;
+  for (int how = 0; how < WAYS_TO_MOVE; how++) {
+    const world w = far_apart();
+    msr_state *other;
+    must(msr_state_create(w.plan, &other, &why));
+    must(msr_state_step(other, 2, &why));
+    advance(&w, 2);
+    const msr_arrays s = msr_state_edit(how == EDITED ? w.state : other);
+    s.x[0] = 18.99, s.vx[0] = 5;
+    if (how == COPIED) msr_state_copy(w.state, other);
+    if (how == LOADED) {
+      must(msr_state_save(other, path_of("collide"), &why));
+      must(msr_state_load(w.state, path_of("collide"), &why));
+    }
+    advance(&w, 2);
+    const msr_view now = msr_state_view(w.state);
+    assert_true(fabs(now.vx[0]) <= 1e-12 && fabs(now.vx[1] - 5) <= 1e-12);
+    msr_state_free(other);
+    close_world(w);
+  }
 }
 
 /* ---- The search */
@@ -643,6 +730,8 @@ int main(void) {
       cmocka_unit_test(a_tower_stands),
       cmocka_unit_test(a_heap_comes_to_rest),
       cmocka_unit_test(coincident_discs_part),
+      cmocka_unit_test(parting_changes_no_speed),
+      cmocka_unit_test(many_never_overlap),
       cmocka_unit_test(on_only_where_masses_can_meet),
       cmocka_unit_test(a_diameter_is_checked),
       cmocka_unit_test(nothing_else_changes),
