@@ -159,7 +159,7 @@ static void look_among(msri_near *near, const search *s, size_t i, uint32_t begi
 /* Appends the pairs of mass i with those of a higher number around it. */
 static void look_around(msri_near *near, const search *s, size_t i) {
   const cell at = cell_at(s->q0, near->n, i, s->size);
-  for (int64_t cy = at.y - 1; cy <= at.y + 1; cy++) {
+  for (int64_t cy = at.y - 1; cy <= at.y + 1 && !near->list->full; cy++) {
     const cell first = {at.x - 1, cy};
     const three t = three_from(near, first);
     look_among(near, s, i, t.begin, t.end);
@@ -304,7 +304,7 @@ static void walk_through(msri_near *near, const search *s, const frame *f, size_
     for (size_t k = 0; k < rest; k++) meet_on_way(near, s, &w, set[k], -1);
     return;
   }
-  for (double step = 0; step <= w.steps; step++) look_from(near, s, &w, step);
+  for (double step = 0; step <= w.steps && !near->list->full; step++) look_from(near, s, &w, step);
 }
 
 /* Looks at those that rest in a frame among themselves, and at all others on their way through it.
