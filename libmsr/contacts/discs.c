@@ -146,7 +146,7 @@ static bool list_for_pushes(course *c) {
   return !c->near.list->full;
 }
 
-/* Crowds grow by every pair that meets; if there is no end to it, all are one. */
+/* Zones grow by every pair that meets; if there is no end to it, all are one. */
 static void join(course *c) {
   msri_drift_part(&c->d);
   for (int joins = 0; joins < MOST_JOINS; joins++) {
@@ -226,23 +226,23 @@ static uint64_t collide(course *c) {
   return d->collisions;
 }
 
-/* ---- Memory of a state: a vector, the crowds, the list */
+/* ---- Memory of a state: a vector, the zones, the list */
 
 static size_t rounded(size_t bytes) { return (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT; }
 
 static size_t vector_bytes(const msri_discs *d) { return rounded(2 * d->n * sizeof(double)); }
 
-static size_t crowd_bytes(const msri_discs *d) { return rounded(3 * d->n * sizeof(uint32_t)); }
+static size_t zone_bytes(const msri_discs *d) { return rounded(3 * d->n * sizeof(uint32_t)); }
 
 static size_t held_bytes(const msri_discs *d) { return rounded(2 * d->n); }
 
 size_t msri_discs_room(const msri_discs *d) {
-  return vector_bytes(d) + crowd_bytes(d) + held_bytes(d) + msri_near_bytes(d->n);
+  return vector_bytes(d) + zone_bytes(d) + held_bytes(d) + msri_near_bytes(d->n);
 }
 
 static course begin(const msri_discs *discs, const msri_contact *supports, void *room, double h) {
-  char *const crowds = (char *)room + vector_bytes(discs);
-  char *const held = crowds + crowd_bytes(discs), *const near = held + held_bytes(discs);
+  char *const zones = (char *)room + vector_bytes(discs);
+  char *const held = zones + zone_bytes(discs), *const near = held + held_bytes(discs);
   return (course){.d = {.n = discs->n,
                         .m = discs->m,
                         .m_stride = discs->m_stride,
@@ -250,9 +250,9 @@ static course begin(const msri_discs *discs, const msri_contact *supports, void 
                         .restitution = discs->restitution,
                         .supports = supports,
                         .h = h,
-                        .crowd = (void *)crowds,
-                        .next = (uint32_t *)(void *)crowds + discs->n,
-                        .pass = (uint32_t *)(void *)crowds + 2 * discs->n,
+                        .zone = (void *)zones,
+                        .next = (uint32_t *)(void *)zones + discs->n,
+                        .pass = (uint32_t *)(void *)zones + 2 * discs->n,
                         .held = (signed char *)held},
                   .near = msri_near_place(discs->n, discs->diameter, &discs->ties, near)};
 }

@@ -8,8 +8,14 @@
  * is the mean of both velocities if e = 1, the work of the forces on it is what it should be: no
  * heat.
  *
- * What can't be so solved becomes a crowd: all of it go the way of its centre of mass, so that
- * nobody comes nearer to anybody, and the velocities against that centre are reversed. */
+ * Slow contacts come to rest where e < 1. Half a kick is still to come: ways and velocities are
+ * changed as if e were 1, which alone leaves at rest what was at rest; discs go as near as
+ * touching; and then what is left of the normal velocity at the end of the step, v + h a / 2, is
+ * taken from pairs that touch, one after the other. Each time that only loses energy.
+ *
+ * What can't be so solved becomes a zone of impact (Provot 1997, Collision and self-collision
+ * handling in cloth model): all of it go the way of its centre of mass, so that nobody comes nearer
+ * to anybody, and the velocities against that centre are reversed, or vanish if they are slow. */
 #include "contacts/drift.h"
 
 #include <math.h>
@@ -195,10 +201,10 @@ bool msri_drift_rest(msri_drift *d, size_t i, size_t j) {
   return true;
 }
 
-/* ---- Crowds: rings of masses that go the same way */
+/* ---- Zones: rings of masses that go the same way */
 
 void msri_drift_part(msri_drift *d) {
-  for (size_t i = 0; i < d->n; i++) d->crowd[i] = d->next[i] = (uint32_t)i;
+  for (size_t i = 0; i < d->n; i++) d->zone[i] = d->next[i] = (uint32_t)i;
 }
 
 /* The way of its centre of mass. */
@@ -279,12 +285,12 @@ static void swap_next(const msri_drift *d, size_t i, size_t j) {
   d->next[i] = d->next[j], d->next[j] = after;
 }
 
-/* The joint crowd goes the way of its centre of mass; or, if that leads into a support, nowhere. */
+/* The joint zone goes the way of its centre of mass; or, if that leads into a support, nowhere. */
 bool msri_drift_join(msri_drift *d, size_t i, size_t j) {
-  if (d->crowd[i] == d->crowd[j] || is_as_it_was(d, i, j)) return false;
+  if (d->zone[i] == d->zone[j] || is_as_it_was(d, i, j)) return false;
   const msri_disc_pair p = msri_drift_pair(d, i, j);
   if (!msri_disc_pair_meets(&p)) return false;
-  for (size_t k = j; d->crowd[k] != d->crowd[i]; k = d->next[k]) d->crowd[k] = d->crowd[i];
+  for (size_t k = j; d->zone[k] != d->zone[i]; k = d->next[k]) d->zone[k] = d->zone[i];
   swap_next(d, i, j);
   go_together(d, i, common_way(d, i));
   if (is_stopped(d, i)) go_together(d, i, (msri_vec){0, 0});
@@ -292,7 +298,7 @@ bool msri_drift_join(msri_drift *d, size_t i, size_t j) {
 }
 
 void msri_drift_join_all(msri_drift *d) {
-  for (size_t i = 0; i < d->n; i++) d->crowd[i] = 0, d->next[i] = (uint32_t)((i + 1) % d->n);
+  for (size_t i = 0; i < d->n; i++) d->zone[i] = 0, d->next[i] = (uint32_t)((i + 1) % d->n);
   go_together(d, 0, common_way(d, 0));
   if (is_stopped(d, 0)) go_together(d, 0, (msri_vec){0, 0});
 }

@@ -23,12 +23,12 @@ typedef struct msri_drift {
   double *owed;        /* [2n] as in contact.h; may be NULL */
   double apart;        /* by which discs that overlap may part [px] */
   double most;         /* how far one may be pushed [px] */
-  uint32_t *crowd, *next; /* [n]: the crowd that a mass is of, and the next mass of it */
-  uint32_t *pass;         /* [n]: the last pass in which it was pushed */
-  uint32_t passes;        /* the one under way */
-  uint32_t since;         /* pairs that weren't pushed since this one are as they were */
-  bool parts;             /* it only moves apart discs that overlap: velocities are left alone */
-  double lost;            /* kinetic energy, in collisions of this drift */
+  uint32_t *zone, *next; /* [n]: the zone that a mass is of, and the next mass of it */
+  uint32_t *pass;        /* [n]: the last pass in which it was pushed */
+  uint32_t passes;       /* the one under way */
+  uint32_t since;        /* pairs that weren't pushed since this one are as they were */
+  bool parts;            /* it only moves apart discs that overlap: velocities are left alone */
+  double lost;           /* kinetic energy, in collisions of this drift */
   uint64_t collisions;
 } msri_drift;
 
@@ -51,13 +51,13 @@ bool msri_drift_collide(msri_drift *d, size_t i, size_t j);
  * the step. Returns whether that changed anything. */
 bool msri_drift_rest(msri_drift *d, size_t i, size_t j);
 
-/* Every mass is a crowd by itself. */
+/* Every mass is a zone by itself. */
 void msri_drift_part(msri_drift *d);
 
-/* If the pair meets, makes one crowd of theirs. Returns whether it did. */
+/* If the pair meets, makes one zone of theirs. Returns whether it did. */
 bool msri_drift_join(msri_drift *d, size_t i, size_t j);
 
-/* Makes one crowd of all. */
+/* Makes one zone of all. */
 void msri_drift_join_all(msri_drift *d);
 
 #endif
