@@ -478,14 +478,16 @@ MSR_API msr_status msr_scene_set_contact(msr_scene *scene, double restitution, d
  * the line between the centres, so that momentum is kept to rounding, angular momentum too where
  * two collide and to the order of the step where more do at once, and energy is never made. Who is
  * closer to another at the start is moved apart from it, slowly, the centre of mass staying where
- * it is, for which its springs may have to give way: that adds energy. Supports are met by the
- * centre. With a restitution below 1 contacts slower than about what a step's forces change
- * velocities by end without a relative velocity: what lies on each other rests. Order 1 through a
- * collision, with either rule of msr_impacts; with MSR_IMPACTS_LOCATED methods other than Verlet
- * and symplectic Euler then end no step at an impact. Where more meet in one step than passes can
- * put right (or more than 8 * masses + 4096 pairs: diameters of several times the distances, many
- * masses at one place) those that meet, at worst all masses, go together for that step: nobody
- * comes nearer to anybody then, either; such steps take long. MSR_EUSAGE. */
+ * it is; but not from masses of its own body that are all so close, from one to the next along the
+ * springs: such pairs count as tied. Supports are met by the centre. With a restitution below 1
+ * contacts slower than about what a step's forces change velocities by end without a relative
+ * velocity: what lies on each other rests. Order 1 through a collision, with either rule of
+ * msr_impacts; with MSR_IMPACTS_LOCATED methods other than Verlet and symplectic Euler then end no
+ * step at an impact. Where more meet in one step than passes can put right (or more than 8 * masses
+ * + 4096 pairs: diameters of several times the distances, many masses at one place) those that
+ * meet, at worst all masses, go together for that step: nobody comes nearer to anybody then,
+ * either; such steps take long. MSR_EUSAGE; msr_plan_create returns it if dozens of masses of one
+ * body are closer to each other than the diameter. */
 MSR_API msr_status msr_scene_set_collisions(msr_scene *scene, double diameter, msr_error *err);
 
 typedef struct msr_mass {

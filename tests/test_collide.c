@@ -352,6 +352,38 @@ static void a_heap_comes_to_rest(void **unused) {
   close_world(w);
 }
 
+/* Discs thicker than the lattice is wide leave their own body alone where it is so from the start:
+ * nothing pushes against springs, and energy isn't made. Another body they meet. */
+static void thick_discs_leave_their_body_alone(void **unused) {
+  (void)unused;
+  for (double diameter = 1.2; diameter < 4; diameter *= 1.25) {
+    msr_scene *scene = scene_of(".......\n.oooo..\n.oooo..\n.oooo..\n.......\n.......\n.......\n"
+                                ".......\n.......\n.......\n...ooo.\n...ooo.\n#######\n",
+                                &(msr_conf){0.005, 9.8, 0.1, 1500, 1, 1}, NULL);
+    must(msr_scene_set_collisions(scene, diameter, &why));
+    const world w = open_world(scene, NULL, 0);
+    const double start = msr_state_energy(w.state).total;
+    for (int n = 0; n < 1000; n++) {
+      advance(&w, 1);
+      const double now = msr_state_energy(w.state).total;
+      // Verlet's own energy swings by a per cent
+      if (!(now < 1.01 * start)) fail_msg("diameter %g: %g of %g", diameter, now, start);
+    }
+    const msr_view s = msr_state_view(w.state);
+    for (size_t i = 0; i < 12; i++)
+      for (size_t j = 12; j < 18; j++)
+        assert_true(hypot(s.x[i] - s.x[j], s.y[i] - s.y[j]) >= diameter * (1 - rounding));
+    close_world(w);
+  }
+  msr_conf conf = {0.005, 9.8, 0.1, 1500, 1, 1};
+  msr_scene *scene = lattice(20, 20, 4, &conf);
+  msr_plan *plan = NULL;
+  must(msr_scene_set_collisions(scene, 1e9, &why));
+  assert_int_equal(msr_plan_create(scene, NULL, &plan, &why), MSR_EUSAGE);
+  assert_non_null(strstr(why.message, "smaller diameter"));
+  msr_scene_free(scene);
+}
+
 /* Discs at one place, or overlapping, part, the centre of mass staying where it is. */
 static void coincident_discs_part(void **unused) {
   (void)unused;
@@ -677,7 +709,8 @@ typedef struct finder {
 
 static finder finder_of(size_t n, const msr_springs *springs) {
   finder f = {.n = n, .q0 = zeroed(2 * n, sizeof(double)), .q = zeroed(2 * n, sizeof(double))};
-  must(msri_ties_create(n, springs, &f.ties, &why));
+  const msr_view start = {.n = n, .x = f.q0, .y = f.q0 + n, .springs = springs};
+  must(msri_ties_create(&start, 0, &f.ties, &why)); // nobody is closer than 0
   f.block = zeroed(1, msri_near_bytes(n));
   f.near = msri_near_place(n, 1, &f.ties, f.block);
   return f;
@@ -776,6 +809,7 @@ int main(void) {
       cmocka_unit_test(bodies_come_to_rest_on_each_other),
       cmocka_unit_test(a_tower_stands),
       cmocka_unit_test(a_heap_comes_to_rest),
+      cmocka_unit_test(thick_discs_leave_their_body_alone),
       cmocka_unit_test(coincident_discs_part),
       cmocka_unit_test(parting_changes_no_speed),
       cmocka_unit_test(many_never_overlap),

@@ -314,7 +314,7 @@ msr_status msri_discs_create(const msr_view *start, double diameter, double rest
   msri_discs *made = msri_alloc(1, sizeof *made, "collisions", err);
   if (!made) return MSR_ENOMEM;
   *made = (msri_discs){start->n, start->m, start->m_stride, diameter, restitution, {0}};
-  const msr_status status = msri_ties_create(start->n, start->springs, &made->ties, err);
+  const msr_status status = msri_ties_create(start, diameter, &made->ties, err);
   const bool none = status == MSR_OK && all_tied(start->n, &made->ties);
   if (status != MSR_OK || none) {
     msri_discs_free(made);

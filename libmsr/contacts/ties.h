@@ -1,4 +1,5 @@
-/* ties.h - which masses are tied by springs. */
+/* ties.h - which masses never collide: those that springs tie, and those of one body that are too
+ * close from the start. */
 #ifndef MSRI_TIES_H
 #define MSRI_TIES_H
 
@@ -10,8 +11,9 @@ typedef struct msri_ties {
   uint32_t *partner; /* [first[n]] */
 } msri_ties;
 
-/* MSR_ENOMEM. */
-msr_status msri_ties_create(size_t n, const msr_springs *springs, msri_ties *ties, msr_error *err);
+/* For discs of a diameter. MSR_EUSAGE if too many are closer than that; MSR_ENOMEM. */
+msr_status msri_ties_create(const msr_view *start, double diameter, msri_ties *ties,
+                            msr_error *err);
 void msri_ties_clear(msri_ties *ties);
 
 /* Is i tied to j, i < j? */
