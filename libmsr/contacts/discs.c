@@ -263,30 +263,30 @@ void msri_discs_forget(const msri_discs *discs, void *room) {
 
 /* ---- Drift and bounce */
 
-uint64_t msri_discs_drift(const msri_discs *discs, const msri_contact *supports, void *room,
-                          double h, const double *u, const double *a, double *q, double *v,
-                          double *owed) {
+uint64_t msri_discs_drift(const msri_obstacles *all, double h, const double *u, const double *a,
+                          double *q, double *v, double *owed) {
   uint64_t met = 0;
-  course c = begin(discs, supports, room, h);
+  const msri_contact *supports = all->supports;
+  course c = begin(all->discs, supports, all->room, h);
   msri_drift *d = &c.d;
-  memcpy(room, q, 2 * d->n * sizeof *q);
+  memcpy(all->room, q, 2 * d->n * sizeof *q);
   if (supports->drift)
     met = supports->drift(supports->self, d->n, h, u, a, q, v, owed);
   else
     for (size_t i = 0; i < 2 * d->n; i++) q[i] += h * u[i];
-  d->q0 = room, d->q = q, d->v = v;
+  d->q0 = all->room, d->q = q, d->v = v;
   d->kick = a, d->unit = h;
   d->owed = supports->drift ? owed : NULL;
   return met + collide(&c);
 }
 
-uint64_t msri_discs_bounce(const msri_discs *discs, const msri_contact *supports, void *room,
-                           double h, const double *q0, const double *v0, double *q, double *v,
-                           double *owed) {
+uint64_t msri_discs_bounce(const msri_obstacles *all, double h, const double *q0, const double *v0,
+                           double *q, double *v, double *owed) {
   uint64_t met = 0;
-  course c = begin(discs, supports, room, h);
+  const msri_contact *supports = all->supports;
+  course c = begin(all->discs, supports, all->room, h);
   msri_drift *d = &c.d;
-  double *const kick = room;
+  double *const kick = all->room;
   for (size_t i = 0; i < 2 * d->n; i++) kick[i] = v[i] - v0[i];
   if (supports->bounce) met = supports->bounce(supports->self, d->n, h, q0, v0, q, v, owed);
   d->q0 = q0, d->q = q, d->v = v;

@@ -21,13 +21,17 @@ size_t msri_discs_room(const msri_discs *discs);
 /* Tells that places were changed from outside. */
 void msri_discs_forget(const msri_discs *discs, void *room);
 
-/* As msri_contact's drift and bounce; `supports` (its drift NULL: none) are met, too. `room` is the
- * state's. */
-uint64_t msri_discs_drift(const msri_discs *discs, const msri_contact *supports, void *room,
-                          double h, const double *u, const double *a, double *q, double *v,
-                          double *owed);
-uint64_t msri_discs_bounce(const msri_discs *discs, const msri_contact *supports, void *room,
-                           double h, const double *q0, const double *v0, double *q, double *v,
-                           double *owed);
+/* All that may be met. */
+typedef struct msri_obstacles {
+  const msri_discs *discs;
+  const msri_contact *supports; /* its drift NULL: none */
+  void *room;                   /* the state's, for discs */
+} msri_obstacles;
+
+/* As msri_contact's drift and bounce. */
+uint64_t msri_discs_drift(const msri_obstacles *all, double h, const double *u, const double *a,
+                          double *q, double *v, double *owed);
+uint64_t msri_discs_bounce(const msri_obstacles *all, double h, const double *q0, const double *v0,
+                           double *q, double *v, double *owed);
 
 #endif

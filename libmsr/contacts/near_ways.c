@@ -118,7 +118,8 @@ static void walk_through(msri_near *near, const msri_search *s, const frame *f, 
     for (size_t k = 0; k < rest; k++) meet_on_way(near, s, &w, set[k], -1);
     return;
   }
-  for (double step = 0; step <= w.steps && !near->list->full; step++) look_from(near, s, &w, step);
+  const size_t steps = (size_t)w.steps;
+  for (size_t k = 0; k <= steps && !near->list->full; k++) look_from(near, s, &w, (double)k);
 }
 
 /* Looks at those that rest in a frame among themselves, and at all others on their way through it.

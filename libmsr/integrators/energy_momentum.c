@@ -44,7 +44,7 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
   const size_t n = system->n;
   const double h = interval->h;
   double *known = work->vector, *d = known + n, *push = d + n, *memory = push + n;
-  bool *held = (bool *)(memory + MSRI_NEWTON_VECTORS * n);
+  bool *held = (void *)(memory + MSRI_NEWTON_VECTORS * n);
   msr_status status = msri_damp(system, interval->t, h / 2, false, q, v);
   if (status != MSR_OK) return status;
   for (size_t i = 0; i < n; i++) known[i] = h * v[i];

@@ -37,11 +37,11 @@ msr_status msri_state_drift(void *self, double h, const double *u, const double 
   msr_state *state = self;
   const msri_contact *contact = &state->plan->contact;
   const size_t n = state->plan->figures.masses;
+  const msri_obstacles all = {state->plan->discs, contact, state->discs};
   double *owed = a ? state->owed : NULL;
-  const uint64_t collisions =
-      state->plan->discs
-          ? msri_discs_drift(state->plan->discs, contact, state->discs, h, u, a, q, v, owed)
-          : contact->drift(contact->self, n, h, u, a, q, v, owed);
+  const uint64_t collisions = state->plan->discs
+                                  ? msri_discs_drift(&all, h, u, a, q, v, owed)
+                                  : contact->drift(contact->self, n, h, u, a, q, v, owed);
   state->known.q = NULL;
   count(state, collisions);
   return owed && collisions > 0 ? settle(state, q, v) : MSR_OK;
@@ -52,12 +52,12 @@ msr_status msri_state_bounce(void *self, double h, const double *q0, const doubl
   msr_state *state = self;
   const msri_contact *contact = &state->plan->contact;
   const size_t n = state->plan->figures.masses;
+  const msri_obstacles all = {state->plan->discs, contact, state->discs};
   // in the last moment of a step what is owed is nothing, and the rounding of (q - q0) / h is much
   double *owed = contact->meet && h > 1e-3 * state->plan->figures.h ? state->owed : NULL;
-  const uint64_t collisions =
-      state->plan->discs
-          ? msri_discs_bounce(state->plan->discs, contact, state->discs, h, q0, v0, q, v, owed)
-          : contact->bounce(contact->self, n, h, q0, v0, q, v, owed);
+  const uint64_t collisions = state->plan->discs
+                                  ? msri_discs_bounce(&all, h, q0, v0, q, v, owed)
+                                  : contact->bounce(contact->self, n, h, q0, v0, q, v, owed);
   *met = collisions > 0;
   state->known.q = NULL;
   count(state, collisions);

@@ -57,6 +57,7 @@ static msr_status try(course *c, const msr_interval *interval, double reach, boo
 
 /* A step that can't be made, in halves that can; the plan's own method takes what is left after so
  * many. */
+// NOLINTNEXTLINE(misc-no-recursion): MOST_HALVES deep
 static msr_status take_halves(course *c, const msr_interval *whole, int times) {
   const double half = whole->h / 2, middle = whole->t + half;
   bool made;

@@ -72,10 +72,12 @@ msr_status msri_region_step(const msr_integrator *integrator, const msri_swings 
   if (!(fastest > 0) || *step == 0) return MSR_OK;
   double stable = 0, grown = 0;
   bool grows = false;
-  for (double x = from; x < to && !grows; x *= x < fine ? 1.5 : 1.03) {
+  double x = from;
+  while (x < to && !grows) {
     const msr_status status = any_grows(integrator, swings, x / fastest, &grows, err);
     if (status != MSR_OK) return status;
     *(grows ? &grown : &stable) = x / fastest;
+    x *= x < fine ? 1.5 : 1.03;
   }
   if (!grows) return MSR_OK;
   while (grown - stable > 1e-4 * grown && stable > 0) {
