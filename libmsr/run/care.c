@@ -14,7 +14,7 @@
 
 #include "run/guard.h"
 
-enum { PERIOD = 64 };
+enum { PERIOD = 64, LONG_PERIOD = 128 }; /* of iterations; where they are steps, twice as many */
 
 static const double most = 0.02; /* of the energy that the scene had to give */
 
@@ -56,12 +56,16 @@ msr_status msri_care_begin(msr_state *state, msr_error *err) {
   return status;
 }
 
+static bool looks(const msr_state *state) {
+  const uint64_t period = state->plan->figures.substeps > 1 ? PERIOD : LONG_PERIOD;
+  return state->substep == 0 && state->iteration % period == 0;
+}
+
 msr_status msri_care_watch(msr_state *state, bool went_wrong, bool *turned, msr_error *err) {
   msri_care *care = &state->care;
   *turned = false;
   if (!state->plan->cares || care->on || !care->begun) return MSR_OK;
-  const bool looks = state->substep == 0 && state->iteration % PERIOD == 0;
-  if (!went_wrong && !looks) return MSR_OK;
+  if (!went_wrong && !looks(state)) return MSR_OK;
   if (!went_wrong && msri_guard_gain(state, &care->lost) <= most) {
     keep(state);
     return MSR_OK;

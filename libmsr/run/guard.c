@@ -165,8 +165,18 @@ static balance balance_of(const msr_state *state, double *lost) {
                    .gain = now.moving - guard->energy - fallen - pushed - guard->work};
 }
 
-double msri_guard_gain(const msr_state *state, double *lost) {
+static void take_note(msr_state *state, const balance *b) {
+  msri_guard *guard = &state->guard;
+  const bool finite = isfinite(b->moving) && isfinite(b->gain);
+  if (finite && b->given > 0) guard->gain = msri_max(guard->gain, b->gain / b->given);
+  // a fall out of the picture goes on
+  guard->most = msri_max(allowance(&state->plan->figures) * b->given, 2 * b->moving);
+  guard->looked = msri_state_steps(state);
+}
+
+double msri_guard_gain(msr_state *state, double *lost) {
   const balance b = balance_of(state, lost);
+  take_note(state, &b);
   const double loss = state->plan->conserves ? -(b.gain + state->guard.slack) : 0;
   const double gain = msri_max(b.gain, loss);
   if (isnan(b.gain)) return (double)INFINITY;
@@ -177,16 +187,12 @@ msr_status msr_state_check(msr_state *state, msr_error *err) {
   state->failed = NULL;
   const msr_status status = msri_guard_begin(state, err);
   if (status != MSR_OK) return status;
-  msri_guard *guard = &state->guard;
-  const balance b = balance_of(state, &guard->lost);
-  const double given = b.given, gain = b.gain;
-  const bool finite = isfinite(b.moving) && isfinite(gain);
-  if (finite && given > 0) guard->gain = msri_max(guard->gain, gain / given);
-  const double most = allowance(&state->plan->figures) * given;
-  guard->most = msri_max(most, 2 * b.moving); /* a fall out of the picture goes on */
-  guard->looked = msri_state_steps(state);
-  if (finite && gain <= most - given) return MSR_OK;
-  return msri_guard_refuse(state, finite ? 1 + gain / given : (double)NAN, err);
+  const balance b = balance_of(state, &state->guard.lost);
+  const bool finite = isfinite(b.moving) && isfinite(b.gain);
+  const double most = allowance(&state->plan->figures) * b.given;
+  take_note(state, &b);
+  if (finite && b.gain <= most - b.given) return MSR_OK;
+  return msri_guard_refuse(state, finite ? 1 + b.gain / b.given : (double)NAN, err);
 }
 
 /* Is there more than there may be, as far as the last look knew, or no number? */
