@@ -686,19 +686,19 @@ typedef struct msr_arrays {
 } msr_arrays;
 MSR_API msr_arrays msr_state_edit(msr_state *state);
 
-/* Iterations done. While the state steps (seen from poll, say) they may go back, by 128 at most, to
+/* Iterations done. While the state steps (seen from poll, say) they may go back, by 256 at most, to
  * where its energy was sound (figures.care). */
 MSR_API uint64_t msr_state_iteration(const msr_state *state);
 
 /* Advances to `iterations` of DT from here. The guard looks at speeds every 16 steps, and at all
- * energies every 128: MSR_EUNSTABLE names the mass, its longest spring, the time and a step that is
- * stable. With figures.care, x, y, vx, vy are kept every 64 iterations (128 of one step); once 2 %
- * of what the scene had to give came from nowhere, or was lost where nothing takes any, or the
- * guard refuses the state, it goes back to what was kept, and comes here by steps of that method,
- * over four substeps at most, or less where equations can't be solved. They keep the energy and
- * cost tens of times more; what is crushed at the start begins so. Bits don't depend on how steps
- * are grouped. MSR_ENOMEM if there is no memory for such steps: the state may be stepped again. Or
- * what a force returns. */
+ * energies every 256: MSR_EUNSTABLE names the mass, its longest spring, the time and a step that is
+ * stable. With figures.care, x, y, vx, vy are kept every 64 iterations (128 of two steps, 256 of
+ * one); once 2 % of what the scene had to give came from nowhere, or was lost where nothing takes
+ * any, or the guard refuses the state, it goes back to what was kept, and comes here by steps of
+ * that method, over four substeps at most, or less where equations can't be solved. They keep the
+ * energy and cost tens of times more; what is crushed at the start begins so. Bits don't depend on
+ * how steps are grouped. MSR_ENOMEM if there is no memory for such steps: the state may be stepped
+ * again. Or what a force returns. */
 MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err);
 
 /* The guard: what a driving force returns, or MSR_EUNSTABLE if a number or an energy isn't finite

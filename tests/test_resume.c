@@ -162,7 +162,7 @@ static void slices_have_the_same_bits(void **unused) {
   } rows[] = {{"plain", plain, 12, false, false},
               {"leaping", leaping, 10, true, false},
               {"crushed", crushed, 24, false, true},
-              {"heating", heating, 66, false, true}};
+              {"heating", heating, 258, false, true}};
   for (size_t i = 0; i < LENGTH(rows); i++) {
     world whole = rows[i].open();
     advance(&whole, rows[i].iterations);

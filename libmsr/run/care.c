@@ -14,7 +14,7 @@
 
 #include "run/guard.h"
 
-enum { PERIOD = 64, LONG_PERIOD = 128 }; /* of iterations; where they are steps, twice as many */
+enum { PERIOD = 64 }; /* of iterations; where these are one or two steps, 256 steps */
 
 static const double most = 0.02; /* of the energy that the scene had to give */
 
@@ -57,7 +57,8 @@ msr_status msri_care_begin(msr_state *state, msr_error *err) {
 }
 
 static bool looks(const msr_state *state) {
-  const uint64_t period = state->plan->figures.substeps > 1 ? PERIOD : LONG_PERIOD;
+  const uint64_t substeps = state->plan->figures.substeps;
+  const uint64_t period = substeps < 3 ? 4 * PERIOD / substeps : PERIOD;
   return state->substep == 0 && state->iteration % period == 0;
 }
 

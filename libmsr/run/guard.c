@@ -8,7 +8,7 @@
  * one to its bottom. To that comes what is no flaw: one kick of 2 h F by the outer forces of the
  * start (a mass that rests on a support is kicked and reflected for ever), and rounding.
  *
- * All energies cost up to a third of a step: they are looked at every 128 steps, and whenever a
+ * All energies cost up to a third of a step: they are looked at every 256 steps, and whenever a
  * glance at the speeds, every 16 steps, sees more kinetic energy than there may be. So what
  * explodes slowly is told before it can be seen, and what does so at once while there still are
  * numbers.
@@ -30,7 +30,7 @@ static const double rounding = 1e-6; /* [px] */
 /* Heavy masses beside stiff springs of light ones would make it infinite. */
 static const double largest = 1e290;
 
-enum { GLANCE = 16, LOOK = 128 }; /* steps between two */
+enum { GLANCE = 16, LOOK = 256 }; /* steps between two */
 
 typedef struct energies {
   double moving;         /* kinetic and of springs */
@@ -208,7 +208,7 @@ static bool runs(const msr_state *state) {
 
 msr_status msri_guard_watch(msr_state *state, msr_error *err) {
   const uint64_t steps = msri_state_steps(state);
-  const bool late = steps - state->guard.looked >= LOOK;
+  const bool late = steps - state->guard.looked > LOOK;
   return late || (steps % GLANCE == 0 && runs(state)) ? msr_state_check(state, err) : MSR_OK;
 }
 

@@ -39,7 +39,8 @@ static const char *same_as_young(const hard_case *row, const world *w) {
 }
 
 static void add_counters(suite *s) {
-  static const double from[] = {1e9, 1e12, 0x1p52, 0x1p53 - 1e6};
+  // multiples of 256, by which iterations are grouped where energies are watched
+  static const double from[] = {1e9, 1e12, 0x1p52, 0x1p53 - 0x1p20};
   for (size_t i = 0; i < LENGTH(from); i++) {
     hard_case row = {.art = pegged,
                      .conf = conf_of_assignment,
