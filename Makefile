@@ -237,7 +237,7 @@ mutations: all
 BENCH     = $(BUILD)/bench/accuracy
 BENCH_RHS = $(BUILD)/bench/scipy_rhs.so
 BENCH_OBJ = $(filter-out %/scipy_rhs.o,$(call object,$(BENCH_SRC)))
-RHS_OBJ   = $(call object,tests/bench/scipy_rhs.c tests/bench/problem.c)
+RHS_OBJ   = $(call object,tests/bench/scipy_rhs.c tests/bench/problem.c tests/bench/fail.c)
 SUNDIALS_LIBS = -lsundials_arkode -lsundials_cvode -lsundials_nvecserial -lsundials_generic
 
 $(BUILD)/obj/%.o: %.cc $(BUILD)/flags
@@ -263,7 +263,7 @@ bench-guard: $(BUILD)/msr
 
 BESIDE = $(BUILD)/bench/stability
 
-$(BESIDE): $(call object,$(BESIDE_SRC)) $(BUILD)/libmsr.a
+$(BESIDE): $(call object,$(BESIDE_SRC) tests/bench/fail.c) $(BUILD)/libmsr.a
 	@mkdir -p $(@D)
 	$(call show,LINK)$(CXX) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lchipmunk -lbox2d $(GSL_LIBS)
 

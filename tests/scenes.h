@@ -69,6 +69,19 @@ static inline void write_world(const world *w, const double *z) {
   for (size_t a = 0; a < 4; a++) memcpy(to[a], z + a * n, n * sizeof *z);
 }
 
+/* ---- Interrupts */
+
+/* Which call of poll ends the run; 0: none. */
+typedef struct interruption {
+  uint64_t calls, at;
+} interruption;
+
+static inline msr_status interrupt(void *data, const msr_state *state) {
+  interruption *s = data;
+  (void)state;
+  return ++s->calls == s->at ? MSR_EINTR : MSR_OK;
+}
+
 /* ---- Scenes */
 
 /* A full rectangle of masses in free space. */

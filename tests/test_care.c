@@ -280,23 +280,13 @@ static void frames_are_in_order_and_change_no_bit(void **unused) {
   }
 }
 
-typedef struct stop {
-  uint64_t calls, at;
-} stop;
-
-static msr_status interrupt(void *data, const msr_state *state) {
-  stop *s = data;
-  (void)state;
-  return ++s->calls == s->at ? MSR_EINTR : MSR_OK;
-}
-
 /* Interrupted, saved and loaded elsewhere, and both run on: frames and bits are as in one go. */
 static void interrupted_runs_have_the_same_bits(void **unused) {
   (void)unused;
   static const uint64_t at[] = {1, 2, 190, 577, 700, 767, 768, 769, 780, 1000, 1500};
   for (size_t i = 0; i < LENGTH(at); i++) {
     world w = thrown_at(75, LATE, 100, &automatic), other = thrown_at(75, LATE, 100, &automatic);
-    stop s = {0, at[i]};
+    interruption s = {0, at[i]};
     frames f = {0, 0};
     const msr_sink sink = {.self = &f, .write = take};
     const msr_run_options options = {.sinks = &sink, .n_sinks = 1, .poll = interrupt, .data = &s};

@@ -292,29 +292,19 @@ static void fast_masses_reach_the_wall(void **state) {
 
 /* ---- Bits */
 
-typedef struct stop {
-  uint64_t calls, at;
-} stop;
-
-static msr_status interrupt(void *data, const msr_state *state) {
-  stop *s = data;
-  (void)state;
-  return ++s->calls == s->at ? MSR_EINTR : MSR_OK;
-}
-
 /* Interrupted before any step, saved, loaded elsewhere, and run on: the same bits as in one go. */
 static void interrupted_runs_have_the_same_bits(void **state) {
   (void)state;
   msr_conf conf = stiff(0.05, 1e5);
   conf.iterations = 10;
   world whole = falling(&conf, &automatic);
-  stop never = {0, 0};
+  interruption never = {0, 0};
   must(msr_run(whole.state, &(msr_run_options){.poll = interrupt, .data = &never}, &why));
   const msr_work work = msr_state_work(whole.state);
   assert_true(work.leaps > 0 && work.leapt < 10 * msr_plan_describe(whole.plan).substeps);
   assert_true(msr_state_contacts(whole.state) > 0);
   for (uint64_t at = 1; at < never.calls; at += at < 120 ? 1 : never.calls / 10) {
-    stop s = {0, at};
+    interruption s = {0, at};
     world cut = falling(&conf, &automatic), other = falling(&conf, &automatic);
     const msr_run_options options = {.poll = interrupt, .data = &s};
     assert_int_equal(msr_run(cut.state, &options, &why), MSR_EINTR);

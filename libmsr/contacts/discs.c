@@ -257,10 +257,6 @@ static course begin(const msri_discs *discs, const msri_contact *supports, void 
                   .near = msri_near_place(discs->n, discs->diameter, &discs->ties, near)};
 }
 
-void msri_discs_forget(const msri_discs *discs, void *room) {
-  begin(discs, NULL, room, 0).near.list->valid = false;
-}
-
 /* ---- Drift and bounce */
 
 uint64_t msri_discs_drift(const msri_obstacles *all, double h, const double *u, const double *a,

@@ -18,9 +18,6 @@ void msri_discs_free(msri_discs *discs);
 size_t msri_discs_bytes(const msri_discs *discs);
 size_t msri_discs_room(const msri_discs *discs);
 
-/* Tells that places were changed from outside. */
-void msri_discs_forget(const msri_discs *discs, void *room);
-
 /* All that may be met. */
 typedef struct msri_obstacles {
   const msri_discs *discs;

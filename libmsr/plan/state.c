@@ -189,7 +189,6 @@ void msri_state_touched(msr_state *state) {
   state->fresh = false;
   state->known.q = NULL;
   state->guard.begun = state->care.begun = state->care.on = false;
-  if (state->plan->discs) msri_discs_forget(state->plan->discs, state->discs);
 }
 
 /* ---- Reading */

@@ -5,6 +5,8 @@
 #ifndef BENCH_H
 #define BENCH_H
 
+#include "fail.h"
+
 #include "msr.h"
 
 #ifdef __cplusplus
@@ -43,9 +45,6 @@ double clock_now(bool elsewhere);
 
 /* Zeroed, at the beginning of a line of the cache; ends the program if there is none. */
 void *need(size_t count, size_t size);
-
-/* Ends the program with a line on stderr. */
-void bench_fail(const char *what, ...) __attribute__((format(printf, 1, 2), noreturn));
 
 /* A method has one knob: the number of its steps, or the tolerance of one. */
 typedef struct method {

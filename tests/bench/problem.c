@@ -3,7 +3,6 @@
 #include "bench.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,16 +16,6 @@ double clock_now(bool elsewhere) {
   struct timespec now;
   clock_gettime(elsewhere ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID, &now);
   return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-void bench_fail(const char *what, ...) {
-  va_list args;
-  va_start(args, what);
-  fputs("bench: ", stderr);
-  vfprintf(stderr, what, args);
-  fputc('\n', stderr);
-  va_end(args);
-  exit(EXIT_FAILURE);
 }
 
 void *need(size_t count, size_t size) {

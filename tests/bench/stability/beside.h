@@ -3,6 +3,8 @@
 #ifndef BESIDE_H
 #define BESIDE_H
 
+#include "../fail.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -44,8 +46,6 @@ bool is_black(const problem *p, double x, double y);
 
 /* Ends the program if there is no memory. */
 void *need(size_t count, size_t size);
-
-void bench_fail(const char *what, ...) __attribute__((format(printf, 1, 2), noreturn));
 
 /* Calls for each stretch of black pixels of a row: columns from .. to - 1. */
 typedef void on_stretch(void *self, double from, double to, double row);

@@ -2,20 +2,9 @@
 #include "cases.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-void bench_fail(const char *what, ...) {
-  va_list args;
-  va_start(args, what);
-  fputs("bench: ", stderr);
-  vfprintf(stderr, what, args);
-  fputc('\n', stderr);
-  va_end(args);
-  exit(EXIT_FAILURE);
-}
 
 void *need(size_t count, size_t size) {
   void *block = calloc(count ? count : 1, size);
