@@ -13,8 +13,8 @@ msr_status msri_guard_resume(msr_state *state, msr_error *err);
 /* Adds what driving forces have done in the last step, of h. What a force returns. */
 msr_status msri_guard_follow(msr_state *state, double h);
 
-/* A look: energy from nowhere, or where nothing takes it lost, over what the scene had to give; `lost` is
- * the most that potentials have lost by the looks of who asks. */
+/* A look: energy from nowhere, or where nothing takes it lost, over what the scene had to give;
+ * `lost` is the most that potentials have lost by the looks of who asks. */
 double msri_guard_gain(msr_state *state, double *lost);
 
 /* After a substep: looks at the state if it is time to. As msr_state_check. */
