@@ -31,10 +31,11 @@ SANITIZE   = $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-f
 # pkg-config is asked once, when the first command needs it: `make deps` may just have installed it.
 GSL_CFLAGS  = $(eval GSL_CFLAGS := $(shell $(PKG_CONFIG) --cflags gsl 2>/dev/null))$(GSL_CFLAGS)
 GSL_LIBS    = $(eval GSL_LIBS := $(shell $(PKG_CONFIG) --libs gsl 2>/dev/null))$(GSL_LIBS)
+THREADS     = -pthread
 
-COMPILE     = $(CC) $(LANGUAGE) $(WARNINGS) $(C_WARNINGS) $(CFLAGS) $(ARITHMETIC) $(SANITIZE) \
+COMPILE     = $(CC) $(THREADS) $(LANGUAGE) $(WARNINGS) $(C_WARNINGS) $(CFLAGS) $(ARITHMETIC) $(SANITIZE) \
               -fPIC -fvisibility=hidden
-LINK        = $(CC) $(CFLAGS) $(SANITIZE) $(LDFLAGS)
+LINK        = $(CC) $(THREADS) $(CFLAGS) $(SANITIZE) $(LDFLAGS)
 
 # ---- Files ---------------------------------------------------------------------------------------
 

@@ -202,6 +202,14 @@ typedef struct msr_force {
   /* Upper bounds at any stretch, for the stable step: of the largest eigenvalue of -dF/dx / m
    * [1/s^2], at v = 0, and of -dF/dv / m [1/s]; both are 0 on entry. */
   msr_status (*rates)(const void *self, const msr_view *s, double *omega2, double *gamma);
+  /* For a force on which neither place nor velocity nor time has a say: adds that on a mass of
+   * s->m[0] to f[2], x and y. Beside springs of a picture there may be one such force and one with
+   * relax; then states of methods that split step faster, row by row. NULL: it isn't such a one. */
+  void (*uniform)(const void *self, const msr_view *s, double *f);
+  /* For a flow that draws all velocities to one, u[2]: v = u + (v - u) keep in a time h [s],
+   * exactly as flow() would; it fills u and returns keep. Only t, m and n of s are given. NULL:
+   * likewise. */
+  double (*relax)(const void *self, void *scratch, const msr_view *s, double h, double *u);
   /* For what drives, neither dissipative nor conservative: the most power that it can give at s->t,
    * whatever the velocities [kg px^2/s^3]; it may be called after every step. NULL: for the guard
    * the library asks add() after every step. */
@@ -555,13 +563,16 @@ typedef struct msr_plan_options {
                       * error of v shakes a stiff spring little and often, so that a second of any
                       * scene ends within some atol [px]; both 0: atol 1e-6 */
   msr_impacts impacts;
+  unsigned threads; /* that a state steps with, up to 256; 0: 1. Each state starts its own, which
+                     * end with it. Bits don't depend on them. They serve methods that split, on a
+                     * picture's springs with gravity and air; else they have nothing to do */
 } msr_plan_options;
 
 /* Compiles the scene, which may be freed after; the integrator must outlive the plan. `options` may
  * be NULL. MSR_EUSAGE if the integrator lacks name, summary or step, or a tolerance isn't finite or
  * is negative, or if the integrator is implicit and there are 2^32 - 1 masses or springs or more;
- * MSR_EINPUT if no number of substeps is enough; MSR_ENOMEM; or what force->prepare or force->rates
- * returns. */
+ * or for more than 256 threads; MSR_EINPUT if no number of substeps is enough; MSR_ENOMEM; or what
+ * force->prepare or force->rates returns. */
 MSR_API msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *options,
                                    msr_plan **plan, msr_error *err);
 

@@ -21,7 +21,7 @@ pairs=$(includes)
 
 echo "$pairs" | awk '
   BEGIN {
-    split("base:0 formats:1 forces:1 integrators:1 contacts:1 solvers:1 scene:2 plan:3 run:4 accuracy:4", floors, " ")
+    split("base:0 formats:1 forces:1 integrators:1 contacts:1 solvers:1 scene:2 plan:3 sweep:3 run:4 accuracy:4", floors, " ")
     for (i in floors) { split(floors[i], f, ":"); floor["libmsr/" f[1]] = f[2] }
     floor["include"] = -1
     floor["cli"] = 5

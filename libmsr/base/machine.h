@@ -14,6 +14,9 @@
 #define MSRI_AVX512 __attribute__((target("avx512f")))
 #define MSRI_INLINE static inline __attribute__((always_inline))
 
+/* In a loop that waits for another thread. */
+static inline void msri_pause(void) { __builtin_ia32_pause(); }
+
 static inline bool msri_has_avx2(void) { return __builtin_cpu_supports("avx2"); }
 static inline bool msri_has_avx512(void) { return __builtin_cpu_supports("avx512f"); }
 
@@ -21,6 +24,8 @@ static inline bool msri_has_avx512(void) { return __builtin_cpu_supports("avx512
 
 #define MSRI_WIDE   0
 #define MSRI_INLINE static inline
+
+static inline void msri_pause(void) {}
 
 #endif
 

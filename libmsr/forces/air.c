@@ -19,6 +19,11 @@ void msri_air_flow(const msri_air *air, const msr_view *s, double h, double *vx,
   }
 }
 
+double msri_air_relax(const msri_air *air, const msr_view *s, double h, double *u) {
+  u[0] = air->ax, u[1] = air->ay;
+  return exp(-air->c * h / s->m[0]);
+}
+
 double msri_air_rate(double c, const msr_view *s) {
   double most = 0;
   for (size_t i = 0; i < s->n; i++) most = msri_max(most, c / msr_view_mass(s, i));

@@ -40,6 +40,12 @@ static msr_status flow(const void *self, void *scratch, const msr_view *s, doubl
   return MSR_OK;
 }
 
+static double relax(const void *self, void *scratch, const msr_view *s, double h, double *u) {
+  (void)scratch;
+  const msri_air air = still(self);
+  return msri_air_relax(&air, s, h, u);
+}
+
 static msr_status rates(const void *self, const msr_view *s, double *omega2, double *gamma) {
   (void)omega2;
   *gamma = msri_air_rate(((const msr_drag *)self)->c, s);
@@ -58,4 +64,5 @@ const msr_force msr_force_drag = {
     .add = add,
     .flow = flow,
     .rates = rates,
+    .relax = relax,
 };

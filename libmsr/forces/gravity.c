@@ -34,6 +34,10 @@ static msr_status add(const void *self, void *scratch, const msr_view *s, double
   return MSR_OK;
 }
 
+static void uniform(const void *self, const msr_view *s, double *f) {
+  f[1] -= s->m[0] * ((const msr_gravity *)self)->g;
+}
+
 static msr_status between(const void *self, void *scratch, const msr_view *s, const msr_view *to,
                           double *fx, double *fy) {
   (void)to;
@@ -58,4 +62,5 @@ const msr_force msr_force_gravity = {
     .add = add,
     .energy = energy,
     .between = between,
+    .uniform = uniform,
 };

@@ -20,13 +20,15 @@ MSRI_INLINE msri_ends msri_ends_of_anchor(const msr_view *s, const msr_anchor *a
   return (msri_ends){s->x + a->i, s->y + a->i, &a->x, &a->y};
 }
 
-/* Adds a block of forces to masses i .. i+count-1, and takes them from masses j on. */
+/* Adds a block of forces to masses i .. i+count-1, and takes them from masses j on; this comes
+ * first, so that sums are those of a loop over the springs: where a mass ends one of a run and
+ * begins another, the one that it ends comes first. */
 MSRI_INLINE void msri_add_to_ends(size_t count, size_t i, size_t j, const double *bx,
                                   const double *by, double *fx, double *fy) {
-  for (size_t n = 0; n < count; n++) fx[i + n] += bx[n];
-  for (size_t n = 0; n < count; n++) fy[i + n] += by[n];
   for (size_t n = 0; n < count; n++) fx[j + n] -= bx[n];
   for (size_t n = 0; n < count; n++) fy[j + n] -= by[n];
+  for (size_t n = 0; n < count; n++) fx[i + n] += bx[n];
+  for (size_t n = 0; n < count; n++) fy[i + n] += by[n];
 }
 
 /* The forces of all runs, compiled for vectors of some width: the same bits by each of them. */

@@ -93,6 +93,11 @@ static msr_status flow(const void *self, void *scratch, const msr_view *s, doubl
   return MSR_OK;
 }
 
+static double relax(const void *self, void *scratch, const msr_view *s, double h, double *u) {
+  const msri_air air = air_at(self, scratch, s->t);
+  return msri_air_relax(&air, s, h, u);
+}
+
 static msr_status rates(const void *self, const msr_view *s, double *omega2, double *gamma) {
   (void)omega2;
   *gamma = msri_air_rate(((const wind *)self)->c, s);
@@ -120,5 +125,6 @@ const msr_force msr_force_wind = {
     .add = add,
     .flow = flow,
     .rates = rates,
+    .relax = relax,
     .power = power,
 };

@@ -9,7 +9,8 @@
  * order 2; symplectic Euler has both after its kick (at both ends, damping would lower the limit of
  * kick and drift). A backward half and a forward one make a symmetric contraction of springs that
  * are damped in turn; a single order of them, overdamped, would explode far below the limit. */
-#include "base/base.h"
+#include "integrators/splitting.h"
+
 #include "base/vector.h"
 
 #include <math.h>
@@ -40,25 +41,20 @@ static double kick_of(const splitting *row, int j) {
   return coefficient(row->symmetric, row->kick, row->drifts + 1, j);
 }
 
-/* What happens between two drifts, in units of h; a half flow backward, then one forward. */
-typedef struct joint {
-  double kick_before, damp_back, damp_forward, kick_after;
-} joint;
-
-static joint joint_of_composition(const splitting *row, int j) {
+static msri_joint joint_of_composition(const splitting *row, int j) {
   const double back = j > 0 ? drift_of(row, j - 1) / 2 : 0;
   const double forward = j < row->drifts ? drift_of(row, j) / 2 : 0;
-  return (joint){back, back, forward, forward};
+  return (msri_joint){back, back, forward, forward};
 }
 
-static joint joint_of_splitting(const splitting *row, int j) {
+static msri_joint joint_of_splitting(const splitting *row, int j) {
   const double b = kick_of(row, j);
-  if (!row->symmetric) return j == 0 ? (joint){b, 0.5, 0.5, 0} : (joint){b, 0, 0, 0};
-  if (j == row->drifts) return (joint){b, 0.5, 0, 0};
-  return (joint){0, 0, j == 0 ? 0.5 : 0, b};
+  if (!row->symmetric) return j == 0 ? (msri_joint){b, 0.5, 0.5, 0} : (msri_joint){b, 0, 0, 0};
+  if (j == row->drifts) return (msri_joint){b, 0.5, 0, 0};
+  return (msri_joint){0, 0, j == 0 ? 0.5 : 0, b};
 }
 
-static joint joint_of(const splitting *row, int j) {
+static msri_joint joint_of(const splitting *row, int j) {
   return row->kick ? joint_of_splitting(row, j) : joint_of_composition(row, j);
 }
 
@@ -85,7 +81,7 @@ static msr_status damp(const stage *s, double share, bool backward) {
                     : s->system->damp(s->system->self, s->t, share * s->h, backward, s->q, s->v);
 }
 
-static msr_status pass(const stage *s, const joint *j) {
+static msr_status pass(const stage *s, const msri_joint *j) {
   if (!s->system->damp) {
     kick(s, j->kick_before + j->kick_after);
     return MSR_OK;
@@ -122,7 +118,7 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
   msr_status status = MSR_OK;
   (void)err;
   for (int j = 0; j <= row->drifts && status == MSR_OK; j++) {
-    const joint at = joint_of(row, j);
+    const msri_joint at = joint_of(row, j);
     const bool kicks = at.kick_before != 0 || at.kick_after != 0, has = j == 0 && shares(row);
     s.t = msr_interval_time(interval, j == row->drifts ? 1 : share);
     if (kicks && !has) status = accelerate(&s);
@@ -132,6 +128,20 @@ static msr_status step(const msr_integrator *self, const msr_system *system,
     share += drift_of(row, j);
   }
   return status;
+}
+
+/* ---- Taken apart */
+
+int msri_splitting_drifts(const msr_integrator *integrator) {
+  return integrator->step == step ? ((const splitting *)integrator->coefficients)->drifts : 0;
+}
+
+msri_joint msri_splitting_joint(const msr_integrator *integrator, int j) {
+  return joint_of(integrator->coefficients, j);
+}
+
+double msri_splitting_drift(const msr_integrator *integrator, int j) {
+  return drift_of(integrator->coefficients, j);
 }
 
 /* ---- Coefficients; of symmetric rows, those before the middle */

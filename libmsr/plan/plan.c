@@ -4,6 +4,7 @@
 #include "formats/ppm.h"
 #include "integrators/tolerance.h"
 #include "plan/state.h"
+#include "sweep/sweep.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -51,7 +52,7 @@ static void count_memory(msr_plan *plan) {
       mesh->n_added * (sizeof *mesh->k + sizeof *mesh->L) +
       mesh->anchor_capacity * sizeof *mesh->anchor + (plan->graph ? plan->graph->bytes : 0) +
       (plan->contact.drift ? f->width * f->height / 8 : 0) +
-      (plan->discs ? msri_discs_bytes(plan->discs) : 0);
+      (plan->discs ? msri_discs_bytes(plan->discs) : 0) + msri_objects_bytes(&plan->objects);
   f->state_bytes = msri_state_bytes(plan);
 }
 
@@ -81,8 +82,16 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan
   if (status == MSR_OK) status = msri_plan_choose_step(plan, &start, substeps, err);
   if (status == MSR_OK && automatic) status = msri_plan_choose_leaps(plan, err);
   free(q);
-  count_memory(plan);
+  if (status == MSR_OK && msri_plan_sweeps(plan))
+    status = msri_objects_create(plan->picture, plan->neighbours, &plan->objects, err);
+  if (status == MSR_OK) count_memory(plan);
   return status;
+}
+
+static msr_status check_threads(unsigned threads, msr_error *err) {
+  if (threads <= MSRI_MOST_THREADS) return MSR_OK;
+  return msri_fail(err, MSR_EUSAGE, "%u threads are more than the %d that there may be", threads,
+                   MSRI_MOST_THREADS);
 }
 
 static msr_status check_integrator(const msr_integrator *integrator, msr_error *err) {
@@ -99,6 +108,7 @@ msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *optio
   msr_status status = check_integrator(integrator, err);
   msri_tolerance tolerance = {.atol = options->atol, .rtol = options->rtol};
   if (status == MSR_OK) status = msri_tolerance_check(&tolerance, err);
+  if (status == MSR_OK) status = check_threads(options->threads, err);
   if (status != MSR_OK) return status;
   msr_plan *made = msri_alloc(1, sizeof *made, "a plan", err);
   if (!made) return MSR_ENOMEM;
@@ -109,6 +119,8 @@ msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *optio
                                      .impacts = options->impacts,
                                      .atol = tolerance.atol,
                                      .rtol = tolerance.rtol};
+  made->threads = options->threads > 0 ? options->threads : 1;
+  made->neighbours = scene->options.neighbours;
   status = compile(made, scene, options, err);
   if (status == MSR_OK)
     *plan = made;
@@ -127,6 +139,7 @@ void msr_plan_free(msr_plan *plan) {
   if (plan->contact.release) plan->contact.release(plan->contact.self);
   msri_discs_free(plan->discs);
   free(plan->graph);
+  msri_objects_clear(&plan->objects);
   msri_mesh_clear(&plan->mesh);
   msri_notes_clear(&plan->notes);
   msr_picture_free(plan->picture);

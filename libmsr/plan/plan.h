@@ -6,8 +6,12 @@
 #include "base/notes.h"
 #include "contacts/contact.h"
 #include "contacts/discs.h"
+#include "plan/objects.h"
 #include "scene/scene.h"
 #include "solvers/graph.h"
+
+/* Of a state. */
+enum { MSRI_MOST_THREADS = 256 };
 
 /* Of an iteration. */
 #define MSRI_MOST_SUBSTEPS 1e9
@@ -59,6 +63,9 @@ struct msr_plan {
   bool driven;          /* a force drives: states follow its work */
   bool followed;        /* one of them doesn't tell its power: likewise, mass by mass */
   bool middle;          /* a force without between() acts in the middle of a step: likewise */
+  unsigned threads;     /* of a state */
+  int neighbours;       /* of a mass of the picture: 4 or 8 */
+  msri_objects objects; /* of the picture, if states sweep */
   msri_graph *graph;    /* of the springs, if the integrator is implicit */
   msri_contact contact; /* drift NULL: nothing stands in the way */
   msri_discs *discs;    /* NULL: masses don't collide with each other */

@@ -51,14 +51,15 @@ static void place_room(msr_state *state, const room *r, const msri_graph *graph,
 
 static layout lay_out(const msr_plan *plan) {
   const size_t vector = 2 * plan->figures.masses * sizeof(double);
-  const size_t vectors = plan->figures.integrator->vectors;
+  const bool sweeps = msri_plan_sweeps(plan);
+  const size_t vectors = sweeps ? 0 : plan->figures.integrator->vectors;
   layout l;
   size_t end = 0;
   reserve(&end, sizeof(msr_state));
   l.room = lay_out_room(plan, plan->graph, plan->figures.leaps, &end);
   l.q = reserve(&end, vector);
   l.v = reserve(&end, vector);
-  l.work = reserve(&end, (vectors > 0 ? vectors : 1) * vector);
+  l.work = reserve(&end, (vectors > 0 || sweeps ? vectors : 1) * vector);
   l.before = reserve(&end, msri_plan_bounces(plan) ? 2 * vector : 0);
   l.owed = reserve(&end, msri_plan_settles(plan) ? vector : 0);
   l.ahead = reserve(&end, msri_plan_settles(plan) ? vector : 0);
@@ -76,7 +77,7 @@ static size_t block_bytes(const layout *l) { return l->end + ALIGNMENT; }
 
 size_t msri_state_bytes(const msr_plan *plan) {
   const layout l = lay_out(plan);
-  return block_bytes(&l);
+  return block_bytes(&l) + (msri_plan_sweeps(plan) ? msri_sweep_bytes(plan) : 0);
 }
 
 static char *first_aligned(char *block) {
@@ -114,11 +115,15 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
   const size_t n = plan->figures.masses;
   msri_plan_start(plan, made->q, made->q + n, made->v, made->v + n);
   place_room(made, &l.room, plan->graph, arrays);
-  const msr_status status = open_integrator(made, err);
-  if (status == MSR_OK)
+  msr_status status =
+      msri_plan_sweeps(plan) ? msri_sweep_create(plan, &made->sweep, err) : MSR_OK;
+  if (status == MSR_OK) status = open_integrator(made, err);
+  if (status == MSR_OK) {
     *state = made;
-  else
-    free(made);
+    return MSR_OK;
+  }
+  msri_sweep_free(made->sweep);
+  free(made);
   return status;
 }
 
@@ -143,6 +148,7 @@ void msr_state_free(msr_state *state) {
   if (!state) return;
   const msr_integrator *integrator = state->plan->figures.integrator;
   if (integrator->close) integrator->close(state->work.object);
+  msri_sweep_free(state->sweep);
   free(state->care.memory);
   free(state->care.graph);
   free(state);

@@ -4,6 +4,7 @@
 
 #include "plan/plan.h"
 #include "solvers/stiffness.h"
+#include "sweep/sweep.h"
 
 /* What the guard compares with: see run/guard.c. */
 typedef struct msri_guard {
@@ -75,6 +76,7 @@ struct msr_state {
   double *middle;           /* [4n] if plan->midpoint: force, velocity */
   double *between;          /* [4n] if plan->middle: the middle, force */
   double *drive;            /* [2n] if plan->followed: driving forces */
+  msri_sweep *sweep;        /* NULL: integrators step it */
   void *discs;              /* memory of plan->discs, if there are */
   char *scratch;            /* [plan->scratch_bytes] */
   uint64_t *calls;          /* [plan->n_effects] */

@@ -56,10 +56,20 @@ msr_status msri_care_begin(msr_state *state, msr_error *err) {
   return status;
 }
 
-static bool looks(const msr_state *state) {
+/* Iterations between two looks. */
+static uint64_t period_of(const msr_state *state) {
   const uint64_t substeps = state->plan->figures.substeps;
-  const uint64_t period = substeps < 3 ? 4 * PERIOD / substeps : PERIOD;
-  return state->substep == 0 && state->iteration % period == 0;
+  return substeps < 3 ? 4 * PERIOD / substeps : PERIOD;
+}
+
+static bool looks(const msr_state *state) {
+  return state->substep == 0 && state->iteration % period_of(state) == 0;
+}
+
+uint64_t msri_care_patience(const msr_state *state) {
+  if (!state->plan->cares) return UINT64_MAX;
+  const uint64_t period = period_of(state), substeps = state->plan->figures.substeps;
+  return (period - state->iteration % period) * substeps - state->substep;
 }
 
 msr_status msri_care_watch(msr_state *state, bool went_wrong, bool *turned, msr_error *err) {

@@ -9,6 +9,9 @@
  */
 msr_status msri_care_begin(msr_state *state, msr_error *err);
 
+/* Steps until the next look. */
+uint64_t msri_care_patience(const msr_state *state);
+
 /* After every step: looks at the energy if it's time to, or if `went_wrong`, the guard having
  * refused the state. `turned` tells whether the state went back to where its energy was sound, to
  * go on with care. MSR_ENOMEM, what a force returns: then it didn't. */

@@ -94,6 +94,34 @@ static double kick_energy(const msr_view *s, double h, const double *f) {
   return sum / 2;
 }
 
+/* The same where outer forces are equal on equal masses, and there's no room for each. */
+static double uniform_kick_energy(const msr_state *state, double h) {
+  const msr_view s = msr_state_view(state);
+  double f[2] = {0};
+  for (size_t i = 0; i < state->plan->n_terms; i++) {
+    const msri_term *term = &state->plan->term[i];
+    if (msri_force_is_outer(term->force)) term->force->uniform(term->self, &s, f);
+  }
+  const double vx = 2 * h * (f[0] / s.m[0]), vy = 2 * h * (f[1] / s.m[0]);
+  return (double)s.n * s.m[0] * (vx * vx + vy * vy) / 2;
+}
+
+static msr_status find_kick_energy(msr_state *state, double *energy) {
+  const msr_view view = msr_state_view(state);
+  const double h = state->plan->figures.h;
+  double *f = state->work.vector; /* the integrator begins anew */
+  state->fresh = false;
+  if (state->sweep) {
+    *energy = uniform_kick_energy(state, h);
+    return MSR_OK;
+  }
+  memset(f, 0, 2 * view.n * sizeof *f);
+  const msr_status status =
+      msri_state_add_forces(state, &view, msri_force_is_outer, false, f, f + view.n);
+  *energy = kick_energy(&view, h, f);
+  return status;
+}
+
 static double rounding_energy(const msr_view *s, double omega) {
   double mass = 0;
   for (size_t i = 0; i < s->n; i++) mass += msr_view_mass(s, i);
@@ -117,14 +145,11 @@ msr_status msri_guard_begin(msr_state *state, msr_error *err) {
   if (state->guard.begun) return msri_guard_resume(state, err);
   const msr_plan_figures *figures = &state->plan->figures;
   const msr_view view = msr_state_view(state);
-  double *f = state->work.vector; /* the integrator begins anew */
-  state->fresh = false;
-  memset(f, 0, 2 * view.n * sizeof *f);
-  msr_status status =
-      msri_state_add_forces(state, &view, msri_force_is_outer, false, f, f + view.n);
+  double kick;
+  msr_status status = find_kick_energy(state, &kick);
   if (status == MSR_OK) status = find_drive(state);
   const energies start = energies_of(state);
-  const double slack = kick_energy(&view, figures->h, f) + rounding_energy(&view, figures->omega);
+  const double slack = kick + rounding_energy(&view, figures->omega);
   state->guard = (msri_guard){
       .begun = status == MSR_OK,
       .looked = msri_state_steps(state),
@@ -206,9 +231,14 @@ static bool runs(const msr_state *state) {
   return !(twice / 2 <= state->guard.most);
 }
 
-msr_status msri_guard_watch(msr_state *state, msr_error *err) {
+uint64_t msri_guard_patience(const msr_state *state) {
+  const uint64_t since = msri_state_steps(state) - state->guard.looked;
+  return since > LOOK ? 1 : LOOK + 1 - since;
+}
+
+msr_status msri_guard_watch(msr_state *state, bool fast, msr_error *err) {
   const uint64_t steps = msri_state_steps(state);
-  const bool late = steps - state->guard.looked > LOOK;
+  const bool late = fast || steps - state->guard.looked > LOOK;
   return late || (steps % GLANCE == 0 && runs(state)) ? msr_state_check(state, err) : MSR_OK;
 }
 

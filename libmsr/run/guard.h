@@ -17,8 +17,12 @@ msr_status msri_guard_follow(msr_state *state, double h);
  * `lost` is the most that potentials have lost by the looks of who asks. */
 double msri_guard_gain(msr_state *state, double *lost);
 
-/* After a substep: looks at the state if it is time to. As msr_state_check. */
-msr_status msri_guard_watch(msr_state *state, msr_error *err);
+/* Steps until the next look. */
+uint64_t msri_guard_patience(const msr_state *state);
+
+/* After a substep: looks at the state if it is time to, or `fast`, a mass having been seen that was
+ * faster than it should. As msr_state_check. */
+msr_status msri_guard_watch(msr_state *state, bool fast, msr_error *err);
 
 /* What to say of a state that can't be true: see guard_says.c. `ratio`: energy over what there was
  * to give; NaN: a number or an energy isn't finite. */

@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { A_MOMENT = 100000000 }; /* masses times steps: tenths of a second */
+
 typedef struct course {
   double t, h;
   uint64_t steps;
@@ -97,16 +99,65 @@ static msr_status substep(msr_state *state, const msr_system *system, const msri
   return msri_guard_follow(state, f->h);
 }
 
+static void end_iteration(msr_state *state) {
+  if (state->substep < state->plan->figures.substeps) return;
+  state->substep = 0;
+  state->iteration++;
+}
+
 /* A leap, or a substep; the last of an iteration ends it. */
 static msr_status advance(msr_state *state, const msr_system *system, const msri_poll *poll,
                           msr_error *err) {
   const uint64_t before = state->substep;
   msr_status status = msri_leaps(state) ? msri_leap(state, system, poll) : MSR_OK;
   if (status == MSR_OK && state->substep == before) status = substep(state, system, poll, err);
-  if (status == MSR_OK && state->substep == state->plan->figures.substeps)
-    state->substep = 0, state->iteration++;
+  if (status == MSR_OK) end_iteration(state);
   return status;
 }
+
+/* ---- Sweeps */
+
+static uint64_t least(uint64_t a, uint64_t b) { return a < b ? a : b; }
+
+/* As many steps as there are up to the end of an iteration or the next look, or as take a moment.
+ */
+static uint64_t steps_to(const msr_state *state, uint64_t end) {
+  const uint64_t substeps = state->plan->figures.substeps, iterations = end - state->iteration;
+  const uint64_t all = iterations > UINT64_MAX / substeps ? UINT64_MAX : iterations * substeps;
+  const uint64_t moment = 1 + A_MOMENT / (state->plan->figures.masses + 1);
+  const uint64_t look = least(msri_guard_patience(state), msri_care_patience(state));
+  return least(least(all - state->substep, moment), look);
+}
+
+/* Takes note of steps that were taken. What a force returns. */
+static msr_status follow(msr_state *state, uint64_t steps) {
+  msr_status status = MSR_OK;
+  for (; steps > 0 && status == MSR_OK; steps--) {
+    state->substep++;
+    status = msri_guard_follow(state, state->plan->figures.h);
+    end_iteration(state);
+  }
+  return status;
+}
+
+static msr_status sweep(msr_state *state, uint64_t end, const msri_poll *poll, bool *fast) {
+  const size_t n = state->plan->figures.masses;
+  const double most = sqrt(2 * state->guard.most / state->plan->uniform_mass);
+  const msri_swept swept = {state->q,     state->q + n,   state->v,
+                            state->v + n, state->scratch, state->calls};
+  const msri_course way = {state->plan, state->iteration, state->substep, steps_to(state, end)};
+  msr_status status = poll->call ? poll->call(poll->data, state) : MSR_OK;
+  if (status != MSR_OK) return status;
+  const msri_progress progress = msri_sweep_run(state->sweep, &swept, way, most);
+  state->work.steps += progress.steps;
+  state->evaluations += progress.evaluations;
+  *fast = progress.fast;
+  return follow(state, progress.steps);
+}
+
+/* ---- Iterations */
+
+static bool sweeps(const msr_state *state) { return state->sweep && !state->care.on; }
 
 /* Which iteration a status stopped, and why: what the integrator said, or which force it was. */
 static msr_status explain(const msr_state *state, msr_status status, const msr_error *said,
@@ -126,9 +177,10 @@ msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *pol
   msr_system system = msri_state_system(state);
   while (status == MSR_OK && state->iteration < end) {
     msr_error said = {MSR_OK, ""};
-    status = advance(state, &system, poll, &said);
+    bool fast = false;
+    status = sweeps(state) ? sweep(state, end, poll, &fast) : advance(state, &system, poll, &said);
     if (status != MSR_OK) return explain(state, status, &said, err);
-    const msr_status verdict = msri_guard_watch(state, &said);
+    const msr_status verdict = msri_guard_watch(state, fast, &said);
     bool turned = false;
     status = msri_care_watch(state, verdict == MSR_EUNSTABLE, &turned, err);
     if (turned) system = msri_state_system(state);

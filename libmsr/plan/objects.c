@@ -1,0 +1,180 @@
+/* objects.c - connected components of a picture's masses, by its spans: masses side by side in
+ * a row without a gap. Spans that touch those of the row above are united with them (Rosenfeld
+ * & Pfaltz 1966, J. ACM 13, 471), in trees that are flattened as they are climbed (Tarjan 1975,
+ * J. ACM 22, 215). */
+#include "plan/objects.h"
+
+#include "base/pixel.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A span as it is found, in reading order. */
+typedef struct found {
+  size_t first;
+  uint32_t row, column, count;
+  uint32_t parent; /* of its tree; itself: the root, which is the first of the object */
+} found;
+
+typedef struct finds {
+  found *at; /* [n] */
+  size_t n, capacity, masses;
+  msr_error *err;
+} finds;
+
+static uint32_t root_of(found *at, uint32_t s) {
+  while (at[s].parent != s) s = at[s].parent = at[at[s].parent].parent;
+  return s;
+}
+
+static void unite(found *at, uint32_t a, uint32_t b) {
+  const uint32_t p = root_of(at, a), q = root_of(at, b);
+  if (p < q) at[q].parent = p;
+  if (q < p) at[p].parent = q;
+}
+
+/* ---- Spans */
+
+static msr_status find_in_row(finds *f, const msr_picture *picture, size_t row) {
+  const size_t width = picture->width;
+  for (size_t c = 0; c < width; c++) {
+    if (msri_pixel_at(picture, c, row) != MSRI_MASS) continue;
+    const size_t begin = c;
+    while (c < width && msri_pixel_at(picture, c, row) == MSRI_MASS) c++;
+    found *grown = msri_grow(f->at, &f->capacity, f->n + 1, sizeof *grown, "the objects", f->err);
+    if (!grown) return MSR_ENOMEM;
+    f->at = grown;
+    const uint32_t self = (uint32_t)f->n++;
+    grown[self] = (found){f->masses, (uint32_t)row, (uint32_t)begin, (uint32_t)(c - begin), self};
+    f->masses += c - begin;
+  }
+  return MSR_OK;
+}
+
+/* Unites those of a row, from..to-1, with those above, above..from-1, that they touch; `reach` is 1
+ * if corners do. */
+static void unite_rows(found *at, size_t above, size_t from, size_t to, uint32_t reach) {
+  size_t a = above;
+  for (size_t s = from; s < to; s++) {
+    const uint32_t end = at[s].column + at[s].count + reach;
+    while (a < from && at[a].column + at[a].count + reach <= at[s].column) a++;
+    for (size_t b = a; b < from && at[b].column < end; b++) unite(at, (uint32_t)b, (uint32_t)s);
+  }
+}
+
+static msr_status find(finds *f, const msr_picture *picture, int neighbours) {
+  size_t above = 0;
+  for (size_t row = 0; row < picture->height; row++) {
+    const size_t from = f->n;
+    const msr_status status = find_in_row(f, picture, row);
+    if (status != MSR_OK) return status;
+    unite_rows(f->at, above, from, f->n, neighbours == 8 ? 1 : 0);
+    above = from;
+  }
+  return MSR_OK;
+}
+
+/* ---- Objects */
+
+/* What an object covers, and where its spans go next. */
+typedef struct extent {
+  uint32_t top, bottom, left, right; /* inclusive; right is past its last column */
+  size_t spans, next, masses, number;
+} extent;
+
+static void extend(extent *e, const found *s) {
+  if (e->spans == 0) *e = (extent){.top = s->row, .left = s->column};
+  e->bottom = s->row;
+  if (s->column < e->left) e->left = s->column;
+  if (s->column + s->count > e->right) e->right = s->column + s->count;
+  e->spans++;
+  e->masses += s->count;
+}
+
+/* Extents of the objects, at the numbers of their roots. */
+static void measure(finds *f, extent *of) {
+  for (size_t s = 0; s < f->n; s++) {
+    const uint32_t root = root_of(f->at, (uint32_t)s);
+    f->at[s].parent = root;
+    extend(&of[root], &f->at[s]);
+  }
+}
+
+static void number(const finds *f, extent *of, msri_objects *o) {
+  size_t next = 0;
+  for (size_t s = 0; s < f->n; s++) {
+    if (f->at[s].parent != s) continue;
+    of[s].number = o->n;
+    of[s].next = next;
+    const size_t rows = of[s].bottom - of[s].top + 1;
+    o->object[o->n++] = (msri_object){o->n_rows, rows, of[s].right - of[s].left, of[s].masses};
+    o->n_rows += rows;
+    next += of[s].spans;
+  }
+}
+
+/* Spans by object, and the first of each row: an object has one in each of its rows. */
+static void arrange(const finds *f, extent *of, msri_objects *o) {
+  for (size_t s = 0; s < f->n; s++) {
+    const found *from = &f->at[s];
+    extent *e = &of[from->parent];
+    const size_t row = o->object[e->number].row + (from->row - e->top);
+    const bool first = s == from->parent || o->row[row] == SIZE_MAX;
+    if (first) o->row[row] = e->next;
+    o->span[e->next++] = (msri_span){from->first, from->column - e->left, from->count};
+  }
+  o->row[o->n_rows] = f->n;
+}
+
+static size_t count_rows(const finds *f, const extent *of, size_t *objects) {
+  size_t rows = 0;
+  for (size_t s = 0; s < f->n; s++) {
+    if (f->at[s].parent != s) continue;
+    ++*objects;
+    rows += of[s].bottom - of[s].top + 1;
+  }
+  return rows;
+}
+
+static msr_status build(finds *f, msri_objects *o, msr_error *err) {
+  extent *of = msri_alloc(f->n, sizeof *of, "the objects", err);
+  if (!of) return MSR_ENOMEM;
+  measure(f, of);
+  size_t objects = 0;
+  const size_t rows = count_rows(f, of, &objects);
+  o->object = msri_alloc(objects, sizeof *o->object, "the objects", err);
+  o->row = msri_alloc(rows + 1, sizeof *o->row, "the objects", err);
+  o->span = msri_alloc(f->n, sizeof *o->span, "the objects", err);
+  const bool room = o->object && o->row && o->span;
+  if (room) {
+    memset(o->row, 0xff, (rows + 1) * sizeof *o->row);
+    number(f, of, o);
+    arrange(f, of, o);
+  }
+  free(of);
+  return room ? MSR_OK : MSR_ENOMEM;
+}
+
+msr_status msri_objects_create(const msr_picture *picture, int neighbours, msri_objects *objects,
+                               msr_error *err) {
+  finds f = {.err = err};
+  *objects = (msri_objects){0};
+  msr_status status = find(&f, picture, neighbours);
+  if (status == MSR_OK) status = build(&f, objects, err);
+  if (status != MSR_OK) msri_objects_clear(objects);
+  free(f.at);
+  return status;
+}
+
+void msri_objects_clear(msri_objects *objects) {
+  free(objects->object);
+  free(objects->row);
+  free(objects->span);
+  *objects = (msri_objects){0};
+}
+
+size_t msri_objects_bytes(const msri_objects *o) {
+  if (!o->row) return 0;
+  return o->n * sizeof *o->object + (o->n_rows + 1) * sizeof *o->row +
+         o->row[o->n_rows] * sizeof *o->span;
+}

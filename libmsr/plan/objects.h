@@ -1,0 +1,33 @@
+/* objects.h - the picture's separate objects: masses that springs tie together, row by row. */
+#ifndef MSRI_OBJECTS_H
+#define MSRI_OBJECTS_H
+
+#include "base/base.h"
+
+/* Masses first .. first+count-1, side by side in a row from a column of the object on. */
+typedef struct msri_span {
+  size_t first;
+  uint32_t column, count;
+} msri_span;
+
+/* Rows row .. row+rows-1 of msri_objects.row. */
+typedef struct msri_object {
+  size_t row, rows;
+  size_t width; /* in columns, of the smallest rectangle around it */
+  size_t masses;
+} msri_object;
+
+typedef struct msri_objects {
+  msri_object *object;   /* [n] in the order of their first masses */
+  size_t *row;           /* [n_rows + 1]: the first span of each row, from the top */
+  msri_span *span; /* [row[n_rows]] from the left */
+  size_t n, n_rows;
+} msri_objects;
+
+/* Those of a picture, with springs to 4 or 8 neighbours. MSR_ENOMEM: then nothing is left. */
+msr_status msri_objects_create(const msr_picture *picture, int neighbours, msri_objects *objects,
+                               msr_error *err);
+void msri_objects_clear(msri_objects *objects);
+size_t msri_objects_bytes(const msri_objects *objects);
+
+#endif

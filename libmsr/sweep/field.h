@@ -1,0 +1,44 @@
+/* field.h - rows of an object as dense cells, for the kernels of forces/lattice.h. */
+#ifndef MSRI_FIELD_H
+#define MSRI_FIELD_H
+
+#include "plan/objects.h"
+#include "sweep/stage.h"
+
+/* What every part of a sweep knows. */
+typedef struct msri_pass {
+  const msr_plan *plan;
+  const msri_swept *state;
+  const msri_lattice_kernel *kernel;
+  const msri_stage *stage; /* [stages] */
+  int stages;
+  int ways;    /* of springs: to 4 or to 8 neighbours */
+  int besides; /* what acts beside them */
+} msri_pass;
+
+/* Dense arrays, each as long as `stride`; what is around the cells of use is there to be read. */
+typedef struct msri_field {
+  size_t stride;
+  double *x, *y, *vx, *vy, *k[MSRI_WAYS];
+} msri_field;
+
+enum { MSRI_MARGIN = 8 }; /* cells around those of use: of a line of the cache */
+
+/* Doubles of a field; carves it from memory. */
+size_t msri_field_size(int ways, size_t stride);
+msri_field msri_field_place(int ways, size_t stride, double *memory);
+
+/* Copies a row's masses to cells `at` + column, and back; 0 in all other of its `width` cells. */
+void msri_field_fill(const msri_field *f, const msri_objects *objects, size_t row,
+                     const msri_swept *from, size_t at, size_t width);
+void msri_field_empty(const msri_field *f, const msri_objects *objects, size_t row,
+                      const msri_swept *to, size_t at);
+
+/* Stiffness of the springs from a row's cells; `last`: there is no row below. */
+void msri_field_tie(const msri_field *f, const msri_objects *objects, size_t row, bool last,
+                    double k, int ways, size_t at, size_t width);
+
+/* Does a stage to cells. */
+void msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells);
+
+#endif

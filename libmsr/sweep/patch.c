@@ -1,0 +1,75 @@
+/* patch.c - see patch.h. */
+#include "sweep/patch.h"
+
+#include "base/vector.h"
+
+#include <string.h>
+
+/* Cells of a row and the one after it. */
+static size_t length(const msri_object *object) { return object->width + 1; }
+
+size_t msri_patch_cells(const msri_object *object) { return object->rows * length(object); }
+
+/* Of an array, with the row before the first, or after the last, for neighbours that there aren't.
+ */
+static size_t stride(size_t cells, size_t row) { return cells + row + 2 * MSRI_MARGIN; }
+
+size_t msri_patch_size(int ways, const msri_object *object) {
+  const size_t pulls = 2 * (size_t)(ways - MSRI_BELOW);
+  const size_t all = stride(msri_patch_cells(object), length(object));
+  return msri_field_size(ways, all) + pulls * all;
+}
+
+static void fill(const msri_pass *pass, const msri_object *object, const msri_field *f) {
+  const msri_objects *objects = &pass->plan->objects;
+  const size_t row = length(object);
+  for (size_t r = 0; r < object->rows; r++) {
+    const size_t at = MSRI_MARGIN + r * row;
+    msri_field_fill(f, objects, object->row + r, pass->state, at, row);
+    msri_field_tie(f, objects, object->row + r, r + 1 == object->rows, pass->plan->mesh.lattice_k,
+                   pass->ways, at, row);
+  }
+}
+
+/* Forces from the row above the first: none. */
+static void place_pulls(const msri_pass *pass, const msri_object *object, double *memory,
+                        msri_cells *cells) {
+  static const ptrdiff_t shift[MSRI_WAYS] = {[MSRI_BELOW_LEFT] = 1, [MSRI_BELOW_RIGHT] = -1};
+  const size_t row = length(object), all = stride(cells->n, row), before = MSRI_MARGIN + row;
+  for (int way = MSRI_BELOW; way < pass->ways; way++, memory += 2 * all) {
+    double *x = memory + before, *y = memory + all + before;
+    memset(memory, 0, before * sizeof *x);
+    memset(memory + all, 0, before * sizeof *y);
+    const ptrdiff_t back = shift[way] - (ptrdiff_t)row;
+    cells->below[way] = (msri_pull){x, y};
+    cells->above[way] = (msri_pull){x + back, y + back};
+  }
+}
+
+static msri_cells cells_of(const msri_field *f, const msri_object *object, int ways) {
+  const size_t at = MSRI_MARGIN, row = length(object);
+  msri_cells cells = {
+      .n = msri_patch_cells(object),
+      .x = f->x + at,
+      .y = f->y + at,
+      .vx = f->vx + at,
+      .vy = f->vy + at,
+      .below_x = f->x + at + row,
+      .below_y = f->y + at + row,
+  };
+  for (int way = 0; way < ways; way++) cells.k[way] = f->k[way] + at;
+  return cells;
+}
+
+double msri_patch_run(const msri_pass *pass, const msri_object *object, double *memory) {
+  const msri_objects *objects = &pass->plan->objects;
+  const size_t all = stride(msri_patch_cells(object), length(object));
+  const msri_field f = msri_field_place(pass->ways, all, memory);
+  msri_cells cells = cells_of(&f, object, pass->ways);
+  place_pulls(pass, object, memory + msri_field_size(pass->ways, all), &cells);
+  fill(pass, object, &f);
+  for (int s = 0; s < pass->stages; s++) msri_field_step(pass, &pass->stage[s], &cells);
+  for (size_t r = 0; r < object->rows; r++)
+    msri_field_empty(&f, objects, object->row + r, pass->state, MSRI_MARGIN + r * length(object));
+  return msri_worse(msri_largest(cells.n, cells.vx), msri_largest(cells.n, cells.vy));
+}

@@ -1,0 +1,18 @@
+/* patch.h - small objects: all cells of one lie in a dense patch that fits into cache, row after
+ * row, so that a stage is one loop. */
+#ifndef MSRI_PATCH_H
+#define MSRI_PATCH_H
+
+#include "sweep/field.h"
+
+/* Cells of an object in a patch: its rectangle, and one at the end of each row, so that the right
+ * neighbour of the last mass of a row isn't the first of the next. */
+size_t msri_patch_cells(const msri_object *object);
+
+/* Doubles of memory for an object. */
+size_t msri_patch_size(int ways, const msri_object *object);
+
+/* Takes an object through all stages of a pass. Returns the largest speed along an axis. */
+double msri_patch_run(const msri_pass *pass, const msri_object *object, double *memory);
+
+#endif

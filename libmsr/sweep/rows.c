@@ -1,0 +1,312 @@
+/* rows.c - see rows.h. Several steps a pass over what doesn't fit into cache (temporal blocking:
+ * Wolf & Lam 1991, PLDI, 30; in parts that are parallelograms of rows and stages). Rows are worked
+ * on where they are, if the object is a whole rectangle, or in a ring of dense copies. */
+#include "sweep/rows.h"
+
+#include "base/team.h"
+#include "base/vector.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+enum { ROWS = MSRI_MOST_STAGES + 3 }; /* of the ring: those of the wave, and one on each side */
+
+static const size_t cache = 640 * 1024; /* bytes of a core's own, what else is needed left out */
+static const size_t none = SIZE_MAX;
+
+/* Where a part's work is. */
+typedef struct wave {
+  const msri_pass *pass;
+  const msri_object *object;
+  const msri_part *part;
+  size_t wide;         /* cells of a row with what is around them */
+  bool whole;          /* rectangle */
+  size_t row[ROWS];    /* in the ring; none */
+  msri_field at[ROWS]; /* where they are: in the ring or, if they are, `in_place` */
+  bool in_place[ROWS];
+  double *ring, *pulls, *ties, *edge;
+  double fastest;
+} wave;
+
+/* ---- Memory */
+
+static size_t wide(size_t width) { return msri_round_up(width + 2 * MSRI_MARGIN, MSRI_MARGIN); }
+
+static size_t pulls_of_row(int ways) { return 2 * (size_t)(ways - MSRI_BELOW); }
+
+static size_t edge_size(size_t width, int stages) { return 2 * (size_t)stages * wide(width); }
+
+static size_t pulls_size(int ways, size_t width, int stages) {
+  return 2 * (size_t)stages * pulls_of_row(ways) * wide(width);
+}
+
+static size_t ties_size(size_t width) { return 4 * wide(width); }
+
+/* The edge comes first: others look there. */
+size_t msri_rows_size(int ways, size_t width, int stages) {
+  return edge_size(width, stages) + pulls_size(ways, width, stages) + ties_size(width) +
+         (size_t)(stages + 3) * msri_field_size(ways, wide(width));
+}
+
+int msri_rows_stages(int ways, size_t width) {
+  const size_t row = (msri_field_size(ways, 1) + 2 * pulls_of_row(ways)) * wide(width);
+  const size_t stages = cache / (row * sizeof(double));
+  return stages < 1 ? 1 : stages > MSRI_MOST_STAGES ? MSRI_MOST_STAGES : (int)stages;
+}
+
+/* ---- Springs of a whole rectangle: the same in each row */
+
+enum { TO_RIGHT, TO_LEFT, TO_ALL, TO_NONE }; /* from all cells but the last, but the first ... */
+
+static double *ties_at(const wave *w, int which) {
+  return w->ties + (size_t)which * w->wide + MSRI_MARGIN;
+}
+
+static void set_ties(const wave *w) {
+  const double k = w->pass->plan->mesh.lattice_k;
+  const size_t n = w->object->width;
+  memset(w->ties, 0, ties_size(n) * sizeof *w->ties);
+  for (size_t c = 0; c < n; c++) {
+    if (c + 1 < n) ties_at(w, TO_RIGHT)[c] = k;
+    if (c > 0) ties_at(w, TO_LEFT)[c] = k;
+    ties_at(w, TO_ALL)[c] = k;
+  }
+}
+
+static msri_field row_in_place(const wave *w, size_t row) {
+  static const int below[MSRI_WAYS] = {
+      [MSRI_BELOW] = TO_ALL, [MSRI_BELOW_LEFT] = TO_LEFT, [MSRI_BELOW_RIGHT] = TO_RIGHT};
+  const msri_objects *o = &w->pass->plan->objects;
+  const msri_swept *state = w->pass->state;
+  const size_t first = o->span[o->row[w->object->row + row]].first;
+  const bool last = row + 1 == w->object->rows;
+  msri_field f = {w->wide,           state->x + first,  state->y + first,
+                  state->vx + first, state->vy + first, {ties_at(w, TO_RIGHT)}};
+  for (int way = MSRI_BELOW; way < w->pass->ways; way++)
+    f.k[way] = ties_at(w, last ? TO_NONE : below[way]);
+  return f;
+}
+
+/* ---- The ring */
+
+static size_t slot_of(const wave *w, size_t row) { return row % (size_t)(w->pass->stages + 3); }
+
+static msri_field row_in_ring(const wave *w, size_t row) {
+  const int ways = w->pass->ways;
+  const size_t slot = slot_of(w, row), size = msri_field_size(ways, w->wide);
+  msri_field f = msri_field_place(ways, w->wide, w->ring + slot * size);
+  const msri_objects *o = &w->pass->plan->objects;
+  const size_t n = w->object->width;
+  msri_field_fill(&f, o, w->object->row + row, w->pass->state, MSRI_MARGIN, n);
+  msri_field_tie(&f, o, w->object->row + row, row + 1 == w->object->rows,
+                 w->pass->plan->mesh.lattice_k, ways, MSRI_MARGIN, n);
+  f.x += MSRI_MARGIN, f.y += MSRI_MARGIN, f.vx += MSRI_MARGIN, f.vy += MSRI_MARGIN;
+  for (int way = 0; way < ways; way++) f.k[way] += MSRI_MARGIN;
+  return f;
+}
+
+/* Rows that the part below has been at are looked at beyond their end, where it may be at work. */
+static bool is_at_border(const wave *w, size_t row) {
+  const msri_part *part = w->part;
+  return part->number + 1 < part->parts && row + 1 >= part->begin[part->number + 1];
+}
+
+static const msri_field *open_row(wave *w, size_t row) {
+  const size_t slot = slot_of(w, row);
+  if (w->row[slot] == row) return &w->at[slot];
+  w->row[slot] = row;
+  w->in_place[slot] = w->whole && !is_at_border(w, row);
+  w->at[slot] = w->in_place[slot] ? row_in_place(w, row) : row_in_ring(w, row);
+  return &w->at[slot];
+}
+
+static void close_row(wave *w, size_t row) {
+  const size_t slot = slot_of(w, row);
+  w->row[slot] = none;
+  if (w->in_place[slot]) return;
+  msri_field_empty(&w->at[slot], &w->pass->plan->objects, w->object->row + row, w->pass->state, 0);
+}
+
+/* ---- Cells */
+
+/* Neighbouring spans with few cells between them: from .. to-1. */
+typedef struct island {
+  size_t from, to;
+  size_t next; /* span */
+} island;
+
+enum { NEAR = 16 };
+
+/* The first island of a row from span s on. */
+static bool find_island(const wave *w, size_t row, size_t s, island *i) {
+  const msri_objects *o = &w->pass->plan->objects;
+  const size_t end = o->row[w->object->row + row + 1];
+  if (s == end) return false;
+  i->from = o->span[s].column;
+  i->to = i->from + o->span[s].count;
+  for (s++; s < end && o->span[s].column < i->to + NEAR; s++)
+    i->to = (size_t)o->span[s].column + o->span[s].count;
+  i->next = s;
+  return true;
+}
+
+static size_t first_span(const wave *w, size_t row) {
+  return w->pass->plan->objects.row[w->object->row + row];
+}
+
+/* Of a row at a stage: those of the row before are kept, too. */
+static msri_pull pull_at(const wave *w, int stage, size_t row, int way) {
+  const size_t count = pulls_of_row(w->pass->ways);
+  const size_t n = (2 * (size_t)stage + row % 2) * count + 2 * (size_t)(way - MSRI_BELOW);
+  double *x = w->pulls + n * w->wide + MSRI_MARGIN;
+  return (msri_pull){x, x + w->wide};
+}
+
+static void clear(double *to, size_t from, size_t end) {
+  if (from < end) memset(to + from, 0, (end - from) * sizeof *to);
+}
+
+/* No forces to the row below, but from cells a .. b-1, which are to be written anyway. */
+static void clear_pulls(const wave *w, int stage, size_t row, size_t a, size_t b) {
+  island i = {.next = first_span(w, row + 1)};
+  while (find_island(w, row + 1, i.next, &i))
+    for (int way = MSRI_BELOW; way < w->pass->ways; way++) {
+      const msri_pull pull = pull_at(w, stage, row, way);
+      double *x = pull.x - MSRI_MARGIN, *y = pull.y - MSRI_MARGIN; /* a cell to the left counts */
+      const size_t from = i.from + MSRI_MARGIN - 1, to = i.to + MSRI_MARGIN + 1;
+      const size_t left = a + MSRI_MARGIN < to ? a + MSRI_MARGIN : to;
+      const size_t right = b + MSRI_MARGIN > from ? b + MSRI_MARGIN : from;
+      clear(x, from, left), clear(y, from, left);
+      clear(x, right, to), clear(y, right, to);
+    }
+}
+
+static msri_cells cells_of(const wave *w, int stage, size_t row, const island *i,
+                           const msri_field *f, const double *below_x, const double *below_y) {
+  static const ptrdiff_t shift[MSRI_WAYS] = {[MSRI_BELOW_LEFT] = 1, [MSRI_BELOW_RIGHT] = -1};
+  const ptrdiff_t at = (ptrdiff_t)i->from;
+  msri_cells cells = {
+      .n = i->to - i->from,
+      .x = f->x + at,
+      .y = f->y + at,
+      .vx = f->vx + at,
+      .vy = f->vy + at,
+      .below_x = below_x + at,
+      .below_y = below_y + at,
+      .k = {f->k[MSRI_RIGHT] + at},
+  };
+  for (int way = MSRI_BELOW; way < w->pass->ways; way++) {
+    const msri_pull above = pull_at(w, stage, row + 1, way), below = pull_at(w, stage, row, way);
+    cells.k[way] = f->k[way] + at;
+    cells.above[way] = (msri_pull){above.x + at + shift[way], above.y + at + shift[way]};
+    cells.below[way] = (msri_pull){below.x + at, below.y + at};
+  }
+  return cells;
+}
+
+/* ---- The wave */
+
+static size_t first_row(const wave *w, int stage) {
+  const msri_part *part = w->part;
+  return part->begin[part->number] + (part->number > 0 ? (size_t)stage : 0);
+}
+
+static size_t end_row(const wave *w, int stage) {
+  const msri_part *part = w->part;
+  const bool last = part->number + 1 == part->parts;
+  return part->begin[part->number + 1] + (last ? 0 : (size_t)stage);
+}
+
+static double *edge_at(const wave *w, double *edge, int stage) {
+  return edge + 2 * (size_t)stage * w->wide + MSRI_MARGIN;
+}
+
+/* Where the row below is, at this stage. */
+static void look_below(wave *w, int stage, size_t row, const double **x, const double **y) {
+  const msri_part *part = w->part;
+  if (row + 1 == end_row(w, stage) && part->number + 1 < part->parts) {
+    *x = edge_at(w, part->memory[part->number + 1], stage);
+    *y = *x + w->wide;
+    return;
+  }
+  const msri_field *f = open_row(w, row + 1 < w->object->rows ? row + 1 : row);
+  *x = f->x, *y = f->y;
+}
+
+static void step_row(wave *w, int stage, size_t row, bool pulls_only) {
+  const msri_pass *pass = w->pass;
+  const msri_field f = *open_row(w, row);
+  const double *x, *y;
+  island i = {.next = first_span(w, row)};
+  find_island(w, row, i.next, &i);
+  if (pulls_only) {
+    x = open_row(w, row + 1)->x, y = open_row(w, row + 1)->y;
+  } else {
+    look_below(w, stage, row, &x, &y);
+  }
+  const bool one = i.next == first_span(w, row + 1);
+  if (row + 1 < w->object->rows && pass->stage[stage].forces)
+    clear_pulls(w, stage, row, one ? i.from : 0, one ? i.to : 0);
+  do {
+    const msri_cells cells = cells_of(w, stage, row, &i, &f, x, y);
+    if (pulls_only)
+      pass->kernel->of[pass->ways > MSRI_BELOW + 1].pull(&cells, &pass->stage[stage].motion);
+    else
+      msri_field_step(pass, &pass->stage[stage], &cells);
+    if (pulls_only || stage + 1 < pass->stages) continue;
+    w->fastest = msri_worse(msri_largest(cells.n, cells.vx), w->fastest);
+    w->fastest = msri_worse(msri_largest(cells.n, cells.vy), w->fastest);
+  } while (find_island(w, row, i.next, &i));
+}
+
+/* Before a stage of a part begins: the forces from the row above, which stays behind; and where its
+ * first row is now, for the part above. */
+static void begin_stage(wave *w, int stage) {
+  const size_t row = first_row(w, stage), n = w->object->width;
+  if (w->part->number == 0) {
+    const size_t doubles = pulls_of_row(w->pass->ways) * w->wide;
+    memset(pull_at(w, stage, row + 1, MSRI_BELOW).x - MSRI_MARGIN, 0, doubles * sizeof(double));
+    return;
+  }
+  const msri_field *f = open_row(w, row);
+  double *x = edge_at(w, w->edge, stage), *y = x + w->wide;
+  memcpy(x, f->x, n * sizeof *x);
+  memcpy(y, f->y, n * sizeof *y);
+  if (w->pass->stage[stage].forces) step_row(w, stage, row - 1, true);
+  if (stage > 0) close_row(w, row - 1);
+  if (stage == 0) w->row[slot_of(w, row - 1)] = none;
+  if (stage + 1 == w->pass->stages)
+    atomic_store_explicit(&w->part->opened[w->part->number], w->part->turn, memory_order_release);
+}
+
+static void run(wave *w) {
+  const msri_part *part = w->part;
+  const bool last = part->number + 1 == part->parts;
+  const size_t begin = part->begin[part->number], end = part->begin[part->number + 1];
+  const size_t behind = (size_t)w->pass->stages - 1;
+  for (size_t front = begin; front < end + behind + (last ? 0 : behind); front++) {
+    if (!last && front + 1 == end) msri_team_wait(&part->opened[part->number + 1], part->turn);
+    for (int s = 0; s < w->pass->stages && front >= first_row(w, s) + (size_t)s; s++) {
+      const size_t row = front - (size_t)s;
+      if (row >= end_row(w, s)) continue;
+      if (row == first_row(w, s)) begin_stage(w, s);
+      step_row(w, s, row, false);
+      if (s + 1 == w->pass->stages) close_row(w, row);
+    }
+  }
+}
+
+double msri_rows_run(const msri_pass *pass, const msri_object *object, const msri_part *part) {
+  const size_t width = object->width;
+  double *memory = part->memory[part->number];
+  wave w = {.pass = pass, .object = object, .part = part, .wide = wide(width)};
+  w.whole = object->masses == object->rows * width;
+  w.edge = memory;
+  w.pulls = w.edge + edge_size(width, pass->stages);
+  w.ties = w.pulls + pulls_size(pass->ways, width, pass->stages);
+  w.ring = w.ties + ties_size(width);
+  for (int n = 0; n < ROWS; n++) w.row[n] = none;
+  set_ties(&w);
+  run(&w);
+  return w.fastest;
+}

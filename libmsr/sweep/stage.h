@@ -1,0 +1,33 @@
+/* stage.h - steps of a splitting as a row of stages: forces where masses are, kicks, a drift. */
+#ifndef MSRI_STAGE_H
+#define MSRI_STAGE_H
+
+#include "forces/lattice.h"
+#include "plan/plan.h"
+
+/* What is stepped: the arrays of a state. */
+typedef struct msri_swept {
+  double *x, *y, *vx, *vy; /* [masses] */
+  char *scratch;           /* of the terms */
+  uint64_t *calls;         /* of the effects, counted up */
+} msri_swept;
+
+typedef struct msri_stage {
+  bool kicks;  /* by forces */
+  bool forces; /* they are needed; else it only drifts */
+  msri_motion motion;
+} msri_stage;
+
+/* A course of steps: from substep `substep` of an iteration on, so many. */
+typedef struct msri_course {
+  const msr_plan *plan;
+  uint64_t iteration, substep, steps;
+} msri_course;
+
+/* Stages that it takes: between two steps the end of one and the beginning of the next are one. */
+uint64_t msri_course_stages(const msri_course *course);
+
+/* Stage k of them, counted in the calls of the state. */
+msri_stage msri_course_stage(const msri_course *course, uint64_t k, const msri_swept *state);
+
+#endif

@@ -1,0 +1,248 @@
+/* sweep.c - passes of several stages over all objects: a small one goes through all stages of a
+ * pass by itself, by one thread; large ones go row by row, by all threads together. */
+#include "sweep/sweep.h"
+
+#include "integrators/splitting.h"
+#include "sweep/patch.h"
+#include "sweep/rows.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  PATCH_CELLS = 8192,  /* of a small object: they fit into a core's cache */
+  SHARED_MASSES = 512, /* of an object that is worth sharing among threads */
+  LEAST_STAGES = 4,    /* of a pass: fewer would have threads wait for each other too often */
+  LINE = 64            /* of the cache, and the widest vector */
+};
+
+/* One thread's; on lines of the cache of its own. */
+typedef struct worker {
+  double *patch;
+  double fastest;
+  unsigned turn;
+  char apart[2 * LINE - sizeof(double *) - sizeof(double) - sizeof(unsigned)];
+} worker;
+
+struct msri_sweep {
+  msri_pass pass;
+  msri_team *team; /* NULL: one thread */
+  unsigned threads;
+  int depth;                /* most stages of a pass */
+  worker *worker;           /* [threads] */
+  double **rows;            /* [threads]: memory of each for parts of large objects */
+  _Atomic unsigned *opened; /* [threads] */
+  unsigned turn;            /* of objects that were shared so far */
+  msri_stage stage[MSRI_MOST_STAGES];
+};
+
+/* ---- Which plans */
+
+static bool are_simple(const msr_plan *plan) {
+  int uniform = 0, relax = 0;
+  if (plan->n_terms == 0 || plan->term[0].force != &msr_force_springs) return false;
+  for (size_t i = 1; i < plan->n_terms; i++) {
+    const msr_force *force = plan->term[i].force;
+    if (!force->uniform && !force->relax) return false;
+    uniform += force->uniform != NULL;
+    relax += force->relax != NULL;
+  }
+  return uniform <= 1 && relax <= 1;
+}
+
+bool msri_plan_sweeps(const msr_plan *plan) {
+  const msr_plan_figures *f = &plan->figures;
+  return msri_splitting_drifts(f->integrator) > 0 && !f->leaps && !msri_plan_meets(plan) &&
+         f->masses == plan->n_picture && plan->mesh.n_added == 0 && f->anchors == 0 &&
+         are_simple(plan);
+}
+
+/* ---- Who does what */
+
+static bool is_small(const msr_plan *plan, const msri_object *object) {
+  const size_t cells = msri_patch_cells(object);
+  const bool dense = cells <= PATCH_CELLS && 4 * object->masses >= cells;
+  const bool many = plan->objects.n >= 4 * (size_t)plan->threads;
+  return dense && (plan->threads == 1 || many || object->masses < SHARED_MASSES);
+}
+
+/* Parts of a large object: with fewer rows than twice the stages they'd be all wedge. */
+static unsigned parts_of(const msr_plan *plan, const msri_object *object, int depth) {
+  const size_t most = object->rows / (2 * (size_t)depth);
+  if (object->masses < SHARED_MASSES || most < 2) return 1;
+  return most < plan->threads ? (unsigned)most : plan->threads;
+}
+
+static int depth_for(const msr_plan *plan, const msri_object *object, int ways) {
+  const int stages = msri_rows_stages(ways, object->width);
+  const size_t shared = object->rows / (2 * (size_t)plan->threads);
+  if (plan->threads == 1 || shared >= (size_t)stages) return stages;
+  return shared > LEAST_STAGES ? (int)shared : stages < LEAST_STAGES ? stages : LEAST_STAGES;
+}
+
+/* ---- Memory */
+
+static int ways_of(const msr_plan *plan) {
+  return plan->neighbours == 8 ? MSRI_WAYS : MSRI_BELOW + 1;
+}
+
+/* Doubles of a thread. */
+typedef struct room {
+  int depth;
+  size_t patch, rows;
+} room;
+
+static void widen(size_t *size, size_t least) {
+  if (*size < least) *size = least;
+}
+
+static room room_for(const msr_plan *plan) {
+  const msri_objects *o = &plan->objects;
+  const int ways = ways_of(plan);
+  room r = {.depth = MSRI_MOST_STAGES};
+  size_t width = 0;
+  for (size_t n = 0; n < o->n; n++) {
+    if (is_small(plan, &o->object[n])) {
+      widen(&r.patch, msri_patch_size(ways, &o->object[n]));
+      continue;
+    }
+    const int depth = depth_for(plan, &o->object[n], ways);
+    if (depth < r.depth) r.depth = depth;
+    widen(&width, o->object[n].width);
+  }
+  if (width > 0) r.rows = msri_rows_size(ways, width, r.depth);
+  r.patch = msri_round_up(r.patch, LINE / sizeof(double));
+  r.rows = msri_round_up(r.rows, LINE / sizeof(double));
+  return r;
+}
+
+static size_t bytes_of(const msr_plan *plan, const room *r) {
+  const size_t thread = sizeof(worker) + (r->patch + r->rows) * sizeof(double) + sizeof(double *) +
+                        sizeof(_Atomic unsigned);
+  return sizeof(msri_sweep) + plan->threads * thread + 3 * LINE;
+}
+
+size_t msri_sweep_bytes(const msr_plan *plan) {
+  const room r = room_for(plan);
+  return bytes_of(plan, &r);
+}
+
+static void place(msri_sweep *s, const msr_plan *plan, const room *r) {
+  const size_t threads = plan->threads;
+  char *at = (char *)(s + 1);
+  at += (LINE - (uintptr_t)at % LINE) % LINE;
+  s->worker = (void *)at;
+  at += threads * sizeof *s->worker;
+  double *doubles = (void *)at;
+  at += threads * (r->patch + r->rows) * sizeof *doubles;
+  s->rows = (void *)at;
+  at += threads * sizeof *s->rows;
+  s->opened = (void *)at;
+  for (size_t t = 0; t < threads; t++, doubles += r->patch + r->rows) {
+    s->worker[t].patch = doubles;
+    s->rows[t] = doubles + r->patch;
+  }
+}
+
+static int besides_of(const msr_plan *plan) {
+  int besides = 0;
+  for (size_t i = 0; i < plan->n_terms; i++)
+    besides |= (plan->term[i].force->uniform ? MSRI_WITH_WEIGHT : 0) |
+               (plan->term[i].force->relax ? MSRI_WITH_AIR : 0);
+  return besides;
+}
+
+msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error *err) {
+  const room r = room_for(plan);
+  msri_sweep *made = msri_alloc(1, bytes_of(plan, &r), "a state", err);
+  if (!made) return MSR_ENOMEM;
+  made->threads = plan->threads;
+  made->depth = r.depth;
+  made->pass = (msri_pass){.plan = plan,
+                           .kernel = msri_lattice_widest(),
+                           .stage = made->stage,
+                           .ways = ways_of(plan),
+                           .besides = besides_of(plan)};
+  place(made, plan, &r);
+  const msr_status status =
+      plan->threads > 1 ? msri_team_create(plan->threads, &made->team, err) : MSR_OK;
+  if (status == MSR_OK)
+    *sweep = made;
+  else
+    free(made);
+  return status;
+}
+
+void msri_sweep_free(msri_sweep *sweep) {
+  if (!sweep) return;
+  msri_team_free(sweep->team);
+  free(sweep);
+}
+
+/* ---- Passes */
+
+static double run_large(msri_sweep *s, const msri_object *object, unsigned thread, unsigned owner,
+                        unsigned *turn) {
+  const unsigned parts = parts_of(s->pass.plan, object, s->depth);
+  size_t begin[MSRI_MOST_THREADS + 1];
+  msri_part part = {.parts = parts, .begin = begin, .opened = s->opened};
+  if (parts > 1) part.turn = ++*turn;
+  for (size_t p = 0; p <= parts; p++) begin[p] = object->rows * p / parts;
+  part.number = parts > 1 ? thread : 0;
+  part.memory = parts > 1 ? s->rows : &s->rows[thread];
+  const bool takes_part = parts > 1 ? thread < parts : thread == owner;
+  return takes_part ? msri_rows_run(&s->pass, object, &part) : 0;
+}
+
+static void work(void *self, unsigned thread) {
+  msri_sweep *s = self;
+  const msri_objects *objects = &s->pass.plan->objects;
+  worker *me = &s->worker[thread];
+  unsigned turn = s->turn;
+  me->fastest = 0;
+  for (size_t n = 0; n < objects->n; n++) {
+    const msri_object *object = &objects->object[n];
+    const unsigned owner = (unsigned)(n % s->threads);
+    double fastest = 0;
+    if (!is_small(s->pass.plan, object))
+      fastest = run_large(s, object, thread, owner, &turn);
+    else if (owner == thread)
+      fastest = msri_patch_run(&s->pass, object, me->patch);
+    me->fastest = msri_worse(fastest, me->fastest);
+  }
+  me->turn = turn;
+}
+
+/* Takes the stages that are set. Returns the largest speed along an axis. */
+static double run_pass(msri_sweep *s) {
+  double fastest = 0;
+  if (s->team)
+    msri_team_run(s->team, work, s);
+  else
+    work(s, 0);
+  for (unsigned t = 0; t < s->threads; t++) fastest = msri_worse(s->worker[t].fastest, fastest);
+  s->turn = s->worker[0].turn;
+  return fastest;
+}
+
+msri_progress msri_sweep_run(msri_sweep *s, const msri_swept *state, msri_course course,
+                             double fastest) {
+  const uint64_t drifts = (uint64_t)msri_splitting_drifts(course.plan->figures.integrator);
+  msri_progress progress = {0};
+  s->pass.state = state;
+  for (uint64_t k = 0, end = msri_course_stages(&course); k < end;) {
+    int n = 0;
+    for (; n < s->depth && k < end; n++, k++) {
+      s->stage[n] = msri_course_stage(&course, k, state);
+      progress.evaluations += s->stage[n].kicks;
+    }
+    s->pass.stages = n;
+    if (run_pass(s) <= fastest || progress.fast || k == end) continue;
+    progress.fast = true; /* the step that is under way is the last */
+    course.steps = (k + drifts - 1) / drifts;
+    end = msri_course_stages(&course);
+  }
+  progress.steps = course.steps;
+  return progress;
+}

@@ -1,0 +1,30 @@
+/* sweep.h - steps of a picture's objects, several at a time, row by row while rows are in cache. */
+#ifndef MSRI_SWEEP_H
+#define MSRI_SWEEP_H
+
+#include "base/team.h"
+#include "plan/plan.h"
+#include "sweep/stage.h"
+
+typedef struct msri_sweep msri_sweep;
+
+/* Does the plan sweep? Methods made of kicks and drifts do, where there's nothing but the picture's
+ * springs, a weight and air. */
+bool msri_plan_sweeps(const msr_plan *plan);
+
+/* Memory and threads for it. MSR_ENOMEM. */
+msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error *err);
+void msri_sweep_free(msri_sweep *sweep);
+size_t msri_sweep_bytes(const msr_plan *plan);
+
+/* What became of a run of steps. */
+typedef struct msri_progress {
+  uint64_t steps, evaluations; /* done */
+  bool fast;                   /* a mass moved faster than it should: steps ended early */
+} msri_progress;
+
+/* Takes the steps of a course or, once a mass moves faster than `fastest` along an axis, fewer. */
+msri_progress msri_sweep_run(msri_sweep *sweep, const msri_swept *state, msri_course course,
+                             double fastest);
+
+#endif
