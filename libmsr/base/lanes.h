@@ -4,23 +4,26 @@
 #include "base/machine.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #if MSRI_WIDE
 #include <immintrin.h>
 #endif
 
-#define lanes        NAMED(lanes)
-#define lanes_mask   NAMED(lanes_mask)
-#define lanes_all    NAMED(lanes_all)
-#define lanes_load   NAMED(lanes_load)
-#define lanes_store  NAMED(lanes_store)
-#define lanes_root   NAMED(lanes_root)
-#define lanes_above0 NAMED(lanes_above0)
-#define lanes_keep   NAMED(lanes_keep)
-#define lanes_after  NAMED(lanes_after)
-#define lanes_both   NAMED(lanes_both)
-#define lanes_last   NAMED(lanes_last)
+#define lanes         NAMED(lanes)
+#define lanes_mask    NAMED(lanes_mask)
+#define lanes_all     NAMED(lanes_all)
+#define lanes_load    NAMED(lanes_load)
+#define lanes_store   NAMED(lanes_store)
+#define lanes_root    NAMED(lanes_root)
+#define lanes_above0  NAMED(lanes_above0)
+#define lanes_keep    NAMED(lanes_keep)
+#define lanes_after   NAMED(lanes_after)
+#define lanes_larger  NAMED(lanes_larger)
+#define lanes_largest NAMED(lanes_largest)
+#define lanes_both    NAMED(lanes_both)
+#define lanes_last    NAMED(lanes_last)
 
 #if LANES == 8
 #define LANES_FN MSRI_INLINE __attribute__((target("avx512f")))
@@ -36,6 +39,12 @@ typedef double lanes;
 typedef bool lanes_mask;
 
 LANES_FN lanes lanes_root(lanes a) { return sqrt(a); }
+
+/* The larger, of a and the size of b; what is no number may be left out. */
+LANES_FN lanes lanes_larger(lanes a, lanes b) {
+  const double size = fabs(b);
+  return a > size ? a : size;
+}
 
 /* Which are above 0? */
 LANES_FN lanes_mask lanes_above0(lanes a) { return a > 0; }
@@ -53,6 +62,8 @@ LANES_FN lanes lanes_after(lanes before, lanes a) {
 
 LANES_FN double lanes_last(lanes a) { return a; }
 
+LANES_FN double lanes_largest(lanes a) { return a; }
+
 #else
 
 typedef double lanes __attribute__((vector_size(8 * LANES)));
@@ -65,6 +76,17 @@ LANES_FN lanes lanes_root(lanes a) {
   return (lanes)_mm256_sqrt_pd((__m256d)a);
 #else
   return (lanes)_mm_sqrt_pd((__m128d)a);
+#endif
+}
+
+LANES_FN lanes lanes_larger(lanes a, lanes b) {
+  const lanes size = (lanes)((lanes_mask)b & ((lanes_mask){0} + INT64_MAX));
+#if LANES == 8
+  return (lanes)_mm512_max_pd((__m512d)a, (__m512d)size);
+#elif LANES == 4
+  return (lanes)_mm256_max_pd((__m256d)a, (__m256d)size);
+#else
+  return (lanes)_mm_max_pd((__m128d)a, (__m128d)size);
 #endif
 }
 
@@ -85,6 +107,12 @@ LANES_FN lanes lanes_after(lanes before, lanes a) {
 }
 
 LANES_FN double lanes_last(lanes a) { return a[LANES - 1]; }
+
+LANES_FN double lanes_largest(lanes a) {
+  double most = a[0];
+  for (int n = 1; n < LANES; n++) most = a[n] > most ? a[n] : most;
+  return most;
+}
 
 #endif
 

@@ -14,6 +14,7 @@ typedef struct msri_task {
 typedef struct msri_place {
   size_t cell;
   double left[2];
+  double fastest; /* velocity along an axis so far */
 } msri_place;
 
 #define LANES    1
@@ -66,9 +67,11 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
 
 /* The kernels of one width, for some number of ways. */
 #define ADVANCE(target, width, number, with)                                                       \
-  target static void advance_##width##_##number##_##with(const msri_cells *s,                      \
-                                                         const msri_motion *motion) {              \
-    width(s, motion, &(msri_task){.ways = number, .besides = with}, &(msri_place){0});             \
+  target static double advance_##width##_##number##_##with(const msri_cells *s,                    \
+                                                           const msri_motion *motion) {            \
+    msri_place place = {0};                                                                        \
+    width(s, motion, &(msri_task){.ways = number, .besides = with}, &place);                       \
+    return place.fastest;                                                                          \
   }
 #define ACCELERATE(target, width, number, with)                                                    \
   target static void accelerate_##width##_##number##_##with(                                       \

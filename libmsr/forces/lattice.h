@@ -14,8 +14,12 @@ typedef struct msri_pull {
   double *x, *y;
 } msri_pull;
 
-/* n cells of a row, or of rows one after the other. A cell without a mass, or at the end of a row,
- * has k 0 wherever there's no spring; whatever stands in its place is harmless. */
+enum { MSRI_LANES = 8 }; /* of the widest vector */
+
+/* n cells of a row, or of rows one after the other. A cell without a mass, or at the
+ * end of a row, has k 0 wherever there's no spring: whatever stands in its place is harmless. Rows
+ * that follow each other are longer than MSRI_LANES. Forces from above may be where those to below
+ * go, but for those of MSRI_BELOW_RIGHT. */
 typedef struct msri_cells {
   size_t n;
   double *x, *y, *vx, *vy;         /* [n]; of x and y the cell to the right of the last, too */
@@ -42,8 +46,9 @@ typedef struct msri_lattice_kernel {
   const char *name;
   bool (*runs_here)(void); /* has this machine got such vectors? NULL: every one has */
   struct {
-    /* Forces, then kick, kick, drift; by what acts beside the springs. */
-    void (*advance[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
+    /* Forces, then kick, kick, drift; by what acts beside the springs. Returns the largest
+     * velocity along an axis, as far as it is a number. */
+    double (*advance[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
     /* Accelerations ax, ay [n], air left out. */
     void (*accelerate[MSRI_WITH_AIR])(const msri_cells *cells, const msri_motion *motion,
                                       double *ax, double *ay);

@@ -50,9 +50,9 @@ LANES_FN pair acceleration_of(const msri_cells *s, const msri_motion *motion, si
   const pair right = spring(s->k[MSRI_RIGHT] + c, motion->L[0], lanes_load(s->x + c + 1) - x,
                             lanes_load(s->y + c + 1) - y);
   pair sum = {lanes_all(0), lanes_all(0)}, below[MSRI_WAYS];
-  for (int way = MSRI_BELOW; way < task->ways; way++) below[way] = below_of(s, motion, c, way);
   for (int way = MSRI_BELOW; way < task->ways; way++)
     sum = less(sum, (pair){lanes_load(s->above[way].x + c), lanes_load(s->above[way].y + c)});
+  for (int way = MSRI_BELOW; way < task->ways; way++) below[way] = below_of(s, motion, c, way);
   sum = less(sum, (pair){lanes_after(left->x, right.x), lanes_after(left->y, right.y)});
   sum = more(sum, right);
   for (int way = MSRI_BELOW; way < task->ways; way++) sum = more(sum, below[way]);
@@ -62,9 +62,9 @@ LANES_FN pair acceleration_of(const msri_cells *s, const msri_motion *motion, si
   return (pair){sum.x * lanes_all(motion->w), sum.y * lanes_all(motion->w)};
 }
 
-/* Kicks, with air between them or not, and drift along one axis. */
-LANES_FN void move(const msri_motion *motion, int axis, const msri_task *task, lanes a, double *at,
-                   double *speed) {
+/* Kicks, with air between them or not, and drift along one axis. Returns the velocity. */
+LANES_FN lanes move(const msri_motion *motion, int axis, const msri_task *task, lanes a, double *at,
+                    double *speed) {
   lanes v = lanes_load(speed) + lanes_all(motion->kick[0]) * a;
   for (int n = 0; n < 2 && (task->besides & MSRI_WITH_AIR); n++) {
     const lanes air = lanes_all(motion->air[n][axis]);
@@ -73,12 +73,14 @@ LANES_FN void move(const msri_motion *motion, int axis, const msri_task *task, l
   v = v + lanes_all(motion->kick[1]) * a;
   lanes_store(speed, v);
   lanes_store(at, lanes_load(at) + lanes_all(motion->drift) * v);
+  return v;
 }
 
 /* Goes on from `place`, while there are as many cells as lanes. */
 LANES_FN void go(const msri_cells *s, const msri_motion *motion, const msri_task *task,
                  msri_place *place) {
   pair left = {lanes_all(place->left[0]), lanes_all(place->left[1])};
+  lanes fastest = lanes_all(place->fastest);
   size_t c = place->cell;
   for (; c + LANES <= s->n; c += LANES) {
     if (task->only_below) {
@@ -90,11 +92,12 @@ LANES_FN void go(const msri_cells *s, const msri_motion *motion, const msri_task
       lanes_store(task->ax + c, a.x);
       lanes_store(task->ay + c, a.y);
     } else {
-      move(motion, 0, task, a.x, s->x + c, s->vx + c);
-      move(motion, 1, task, a.y, s->y + c, s->vy + c);
+      fastest = lanes_larger(fastest, move(motion, 0, task, a.x, s->x + c, s->vx + c));
+      fastest = lanes_larger(fastest, move(motion, 1, task, a.y, s->y + c, s->vy + c));
     }
   }
   place->cell = c;
+  place->fastest = lanes_largest(fastest);
   place->left[0] = lanes_last(left.x), place->left[1] = lanes_last(left.y);
 }
 
@@ -117,6 +120,8 @@ LANES_FN void go(const msri_cells *s, const msri_motion *motion, const msri_task
 #undef lanes_after
 #undef lanes_last
 #undef lanes_both
+#undef lanes_larger
+#undef lanes_largest
 #undef LANES_FN
 #undef LANES
 #undef NAMED

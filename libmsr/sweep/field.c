@@ -84,12 +84,10 @@ void msri_field_tie(const msri_field *f, const msri_objects *objects, size_t row
 
 /* ---- Steps */
 
-void msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells) {
+double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells) {
   const int eight = pass->ways > MSRI_BELOW + 1;
-  if (stage->forces) {
-    pass->kernel->of[eight].advance[pass->besides](cells, &stage->motion);
-    return;
-  }
+  if (stage->forces) return pass->kernel->of[eight].advance[pass->besides](cells, &stage->motion);
   msri_add_scaled(cells->n, stage->motion.drift, cells->vx, cells->x);
   msri_add_scaled(cells->n, stage->motion.drift, cells->vy, cells->y);
+  return 0;
 }

@@ -38,7 +38,7 @@ void msri_field_empty(const msri_field *f, const msri_objects *objects, size_t r
 void msri_field_tie(const msri_field *f, const msri_objects *objects, size_t row, bool last,
                     double k, int ways, size_t at, size_t width);
 
-/* Does a stage to cells. */
-void msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells);
+/* Does a stage to cells. Returns the largest velocity along an axis; 0 if they only drift. */
+double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells);
 
 #endif

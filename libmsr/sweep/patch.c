@@ -1,12 +1,12 @@
 /* patch.c - see patch.h. */
 #include "sweep/patch.h"
 
-#include "base/vector.h"
-
 #include <string.h>
 
-/* Cells of a row and the one after it. */
-static size_t length(const msri_object *object) { return object->width + 1; }
+/* Cells of a row and the one after it: no vector holds two neighbours in a column. */
+static size_t length(const msri_object *object) {
+  return object->width < MSRI_LANES ? MSRI_LANES + 1 : object->width + 1;
+}
 
 size_t msri_patch_cells(const msri_object *object) { return object->rows * length(object); }
 
@@ -68,8 +68,10 @@ double msri_patch_run(const msri_pass *pass, const msri_object *object, double *
   msri_cells cells = cells_of(&f, object, pass->ways);
   place_pulls(pass, object, memory + msri_field_size(pass->ways, all), &cells);
   fill(pass, object, &f);
-  for (int s = 0; s < pass->stages; s++) msri_field_step(pass, &pass->stage[s], &cells);
+  double fastest = 0;
+  for (int s = 0; s < pass->stages; s++)
+    fastest = msri_max(msri_field_step(pass, &pass->stage[s], &cells), fastest);
   for (size_t r = 0; r < object->rows; r++)
     msri_field_empty(&f, objects, object->row + r, pass->state, MSRI_MARGIN + r * length(object));
-  return msri_worse(msri_largest(cells.n, cells.vx), msri_largest(cells.n, cells.vy));
+  return fastest;
 }

@@ -4,7 +4,6 @@
 #include "sweep/rows.h"
 
 #include "base/team.h"
-#include "base/vector.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -32,12 +31,13 @@ typedef struct wave {
 
 static size_t wide(size_t width) { return msri_round_up(width + 2 * MSRI_MARGIN, MSRI_MARGIN); }
 
-static size_t pulls_of_row(int ways) { return 2 * (size_t)(ways - MSRI_BELOW); }
+/* MSRI_BELOW_RIGHT twice. */
+static size_t pulls_of_row(int ways) { return ways < MSRI_WAYS ? 2 : 8; }
 
 static size_t edge_size(size_t width, int stages) { return 2 * (size_t)stages * wide(width); }
 
 static size_t pulls_size(int ways, size_t width, int stages) {
-  return 2 * (size_t)stages * pulls_of_row(ways) * wide(width);
+  return (size_t)stages * pulls_of_row(ways) * wide(width);
 }
 
 static size_t ties_size(size_t width) { return 4 * wide(width); }
@@ -49,7 +49,7 @@ size_t msri_rows_size(int ways, size_t width, int stages) {
 }
 
 int msri_rows_stages(int ways, size_t width) {
-  const size_t row = (msri_field_size(ways, 1) + 2 * pulls_of_row(ways)) * wide(width);
+  const size_t row = (4 + pulls_of_row(ways)) * wide(width);
   const size_t stages = cache / (row * sizeof(double));
   return stages < 1 ? 1 : stages > MSRI_MOST_STAGES ? MSRI_MOST_STAGES : (int)stages;
 }
@@ -154,31 +154,39 @@ static size_t first_span(const wave *w, size_t row) {
   return w->pass->plan->objects.row[w->object->row + row];
 }
 
-/* Of a row at a stage: those of the row before are kept, too. */
+/* Of a row at a stage; where MSRI_BELOW_RIGHT is, those of the row before are kept, too. */
 static msri_pull pull_at(const wave *w, int stage, size_t row, int way) {
   const size_t count = pulls_of_row(w->pass->ways);
-  const size_t n = (2 * (size_t)stage + row % 2) * count + 2 * (size_t)(way - MSRI_BELOW);
+  const size_t last = way == MSRI_BELOW_RIGHT ? 2 * (row % 2) : 0;
+  const size_t n = (size_t)stage * count + 2 * (size_t)(way - MSRI_BELOW) + last;
   double *x = w->pulls + n * w->wide + MSRI_MARGIN;
   return (msri_pull){x, x + w->wide};
 }
 
-static void clear(double *to, size_t from, size_t end) {
-  if (from < end) memset(to + from, 0, (end - from) * sizeof *to);
+/* No forces to cells a .. b-1 of the row below. */
+static void clear_pulls(const wave *w, int stage, size_t row, size_t a, size_t b) {
+  for (int way = MSRI_BELOW; way < w->pass->ways && a < b; way++) {
+    const msri_pull pull = pull_at(w, stage, row, way);
+    memset(pull.x + a, 0, (b - a) * sizeof *pull.x);
+    memset(pull.y + a, 0, (b - a) * sizeof *pull.y);
+  }
 }
 
-/* No forces to the row below, but from cells a .. b-1, which are to be written anyway. */
-static void clear_pulls(const wave *w, int stage, size_t row, size_t a, size_t b) {
-  island i = {.next = first_span(w, row + 1)};
-  while (find_island(w, row + 1, i.next, &i))
-    for (int way = MSRI_BELOW; way < w->pass->ways; way++) {
-      const msri_pull pull = pull_at(w, stage, row, way);
-      double *x = pull.x - MSRI_MARGIN, *y = pull.y - MSRI_MARGIN; /* a cell to the left counts */
-      const size_t from = i.from + MSRI_MARGIN - 1, to = i.to + MSRI_MARGIN + 1;
-      const size_t left = a + MSRI_MARGIN < to ? a + MSRI_MARGIN : to;
-      const size_t right = b + MSRI_MARGIN > from ? b + MSRI_MARGIN : from;
-      clear(x, from, left), clear(y, from, left);
-      clear(x, right, to), clear(y, right, to);
+/* No forces to where the row below will look for some, but where this row has cells. */
+static void clear_rest(const wave *w, int stage, size_t row) {
+  const size_t beyond = w->pass->ways == MSRI_WAYS ? 1 : 0;
+  island below = {.next = first_span(w, row + 1)}, here = {.next = first_span(w, row)};
+  bool more = find_island(w, row, here.next, &here);
+  while (find_island(w, row + 1, below.next, &below)) {
+    size_t done = below.from < beyond ? 0 : below.from - beyond;
+    const size_t end = below.to + beyond;
+    for (; more && here.from < end; more = find_island(w, row, here.next, &here)) {
+      clear_pulls(w, stage, row, done, here.from);
+      if (here.to > done) done = here.to;
+      if (here.to >= end) break;
     }
+    clear_pulls(w, stage, row, done, end);
+  }
 }
 
 static msri_cells cells_of(const wave *w, int stage, size_t row, const island *i,
@@ -244,19 +252,14 @@ static void step_row(wave *w, int stage, size_t row, bool pulls_only) {
   } else {
     look_below(w, stage, row, &x, &y);
   }
-  const bool one = i.next == first_span(w, row + 1);
-  if (row + 1 < w->object->rows && pass->stage[stage].forces)
-    clear_pulls(w, stage, row, one ? i.from : 0, one ? i.to : 0);
   do {
     const msri_cells cells = cells_of(w, stage, row, &i, &f, x, y);
     if (pulls_only)
       pass->kernel->of[pass->ways > MSRI_BELOW + 1].pull(&cells, &pass->stage[stage].motion);
     else
-      msri_field_step(pass, &pass->stage[stage], &cells);
-    if (pulls_only || stage + 1 < pass->stages) continue;
-    w->fastest = msri_worse(msri_largest(cells.n, cells.vx), w->fastest);
-    w->fastest = msri_worse(msri_largest(cells.n, cells.vy), w->fastest);
+      w->fastest = msri_max(msri_field_step(pass, &pass->stage[stage], &cells), w->fastest);
   } while (find_island(w, row, i.next, &i));
+  if (row + 1 < w->object->rows && pass->stage[stage].forces) clear_rest(w, stage, row);
 }
 
 /* Before a stage of a part begins: the forces from the row above, which stays behind; and where its
@@ -265,7 +268,7 @@ static void begin_stage(wave *w, int stage) {
   const size_t row = first_row(w, stage), n = w->object->width;
   if (w->part->number == 0) {
     const size_t doubles = pulls_of_row(w->pass->ways) * w->wide;
-    memset(pull_at(w, stage, row + 1, MSRI_BELOW).x - MSRI_MARGIN, 0, doubles * sizeof(double));
+    memset(w->pulls + (size_t)stage * doubles, 0, doubles * sizeof(double));
     return;
   }
   const msri_field *f = open_row(w, row);

@@ -19,10 +19,10 @@ enum {
 
 /* One thread's; on lines of the cache of its own. */
 typedef struct worker {
-  double *patch;
+  double *patch, *rows; /* for an object that it has to itself */
   double fastest;
-  unsigned turn;
-  char apart[2 * LINE - sizeof(double *) - sizeof(double) - sizeof(unsigned)];
+  unsigned turn; /* see msri_sweep */
+  char apart[2 * LINE - 2 * sizeof(double *) - sizeof(double) - sizeof(unsigned)];
 } worker;
 
 struct msri_sweep {
@@ -31,8 +31,9 @@ struct msri_sweep {
   unsigned threads;
   int depth;                /* most stages of a pass */
   worker *worker;           /* [threads] */
-  double **rows;            /* [threads]: memory of each for parts of large objects */
-  _Atomic unsigned *opened; /* [threads] */
+  double **parts;           /* [threads]: memory of each for its parts of objects */
+  _Atomic unsigned *opened; /* [threads]: wedges that each has left to the one above, */
+  _Atomic unsigned *closed; /* [threads] and parts that each has done */
   unsigned turn;            /* of objects that were shared so far */
   msri_stage stage[MSRI_MOST_STAGES];
 };
@@ -62,7 +63,7 @@ bool msri_plan_sweeps(const msr_plan *plan) {
 
 static bool is_small(const msr_plan *plan, const msri_object *object) {
   const size_t cells = msri_patch_cells(object);
-  const bool dense = cells <= PATCH_CELLS && 4 * object->masses >= cells;
+  const bool dense = cells <= PATCH_CELLS && 4 * object->masses >= object->rows * object->width;
   const bool many = plan->objects.n >= 4 * (size_t)plan->threads;
   return dense && (plan->threads == 1 || many || object->masses < SHARED_MASSES);
 }
@@ -87,10 +88,10 @@ static int ways_of(const msr_plan *plan) {
   return plan->neighbours == 8 ? MSRI_WAYS : MSRI_BELOW + 1;
 }
 
-/* Doubles of a thread. */
+/* Doubles of a thread: for small objects, for large ones and for parts of such. */
 typedef struct room {
   int depth;
-  size_t patch, rows;
+  size_t patch, rows, parts;
 } room;
 
 static void widen(size_t *size, size_t least) {
@@ -101,26 +102,30 @@ static room room_for(const msr_plan *plan) {
   const msri_objects *o = &plan->objects;
   const int ways = ways_of(plan);
   room r = {.depth = MSRI_MOST_STAGES};
-  size_t width = 0;
   for (size_t n = 0; n < o->n; n++) {
-    if (is_small(plan, &o->object[n])) {
-      widen(&r.patch, msri_patch_size(ways, &o->object[n]));
-      continue;
-    }
     const int depth = depth_for(plan, &o->object[n], ways);
-    if (depth < r.depth) r.depth = depth;
-    widen(&width, o->object[n].width);
+    if (!is_small(plan, &o->object[n]) && depth < r.depth) r.depth = depth;
   }
-  if (width > 0) r.rows = msri_rows_size(ways, width, r.depth);
+  for (size_t n = 0; n < o->n; n++) {
+    const msri_object *object = &o->object[n];
+    if (is_small(plan, object))
+      widen(&r.patch, msri_patch_size(ways, object));
+    else
+      widen(parts_of(plan, object, r.depth) > 1 ? &r.parts : &r.rows,
+            msri_rows_size(ways, object->width, r.depth));
+  }
   r.patch = msri_round_up(r.patch, LINE / sizeof(double));
   r.rows = msri_round_up(r.rows, LINE / sizeof(double));
+  r.parts = msri_round_up(r.parts, LINE / sizeof(double));
   return r;
 }
 
+static size_t doubles_of(const room *r) { return r->patch + r->rows + r->parts; }
+
 static size_t bytes_of(const msr_plan *plan, const room *r) {
-  const size_t thread = sizeof(worker) + (r->patch + r->rows) * sizeof(double) + sizeof(double *) +
-                        sizeof(_Atomic unsigned);
-  return sizeof(msri_sweep) + plan->threads * thread + 3 * LINE;
+  const size_t thread = sizeof(worker) + doubles_of(r) * sizeof(double) + sizeof(double *) +
+                        2 * sizeof(_Atomic unsigned);
+  return sizeof(msri_sweep) + plan->threads * thread + 2 * LINE;
 }
 
 size_t msri_sweep_bytes(const msr_plan *plan) {
@@ -128,20 +133,19 @@ size_t msri_sweep_bytes(const msr_plan *plan) {
   return bytes_of(plan, &r);
 }
 
-static void place(msri_sweep *s, const msr_plan *plan, const room *r) {
-  const size_t threads = plan->threads;
+static void place(msri_sweep *s, const room *r) {
+  const size_t threads = s->threads;
   char *at = (char *)(s + 1);
   at += (LINE - (uintptr_t)at % LINE) % LINE;
   s->worker = (void *)at;
-  at += threads * sizeof *s->worker;
-  double *doubles = (void *)at;
-  at += threads * (r->patch + r->rows) * sizeof *doubles;
-  s->rows = (void *)at;
-  at += threads * sizeof *s->rows;
-  s->opened = (void *)at;
-  for (size_t t = 0; t < threads; t++, doubles += r->patch + r->rows) {
+  double *doubles = (void *)(s->worker + threads);
+  s->parts = (void *)(doubles + threads * doubles_of(r));
+  s->opened = (void *)(s->parts + threads);
+  s->closed = s->opened + threads;
+  for (size_t t = 0; t < threads; t++, doubles += doubles_of(r)) {
     s->worker[t].patch = doubles;
-    s->rows[t] = doubles + r->patch;
+    s->worker[t].rows = doubles + r->patch;
+    s->parts[t] = s->worker[t].rows + r->rows;
   }
 }
 
@@ -164,7 +168,7 @@ msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error
                            .stage = made->stage,
                            .ways = ways_of(plan),
                            .besides = besides_of(plan)};
-  place(made, plan, &r);
+  place(made, &r);
   const msr_status status =
       plan->threads > 1 ? msri_team_create(plan->threads, &made->team, err) : MSR_OK;
   if (status == MSR_OK)
@@ -182,17 +186,30 @@ void msri_sweep_free(msri_sweep *sweep) {
 
 /* ---- Passes */
 
+/* A part for a thread, once the one above needs nothing of what is left of the last. */
+static double run_part(msri_sweep *s, const msri_object *object, const msri_part *part) {
+  const size_t p = part->number;
+  if (p > 0) msri_team_wait(&s->closed[p - 1], part->turn - 1);
+  const double fastest = msri_rows_run(&s->pass, object, part);
+  atomic_store_explicit(&s->closed[p], part->turn, memory_order_release);
+  return fastest;
+}
+
 static double run_large(msri_sweep *s, const msri_object *object, unsigned thread, unsigned owner,
                         unsigned *turn) {
   const unsigned parts = parts_of(s->pass.plan, object, s->depth);
   size_t begin[MSRI_MOST_THREADS + 1];
-  msri_part part = {.parts = parts, .begin = begin, .opened = s->opened};
-  if (parts > 1) part.turn = ++*turn;
+  msri_part part = {.parts = parts, .begin = begin, .opened = s->opened, .memory = s->parts};
   for (size_t p = 0; p <= parts; p++) begin[p] = object->rows * p / parts;
-  part.number = parts > 1 ? thread : 0;
-  part.memory = parts > 1 ? s->rows : &s->rows[thread];
-  const bool takes_part = parts > 1 ? thread < parts : thread == owner;
-  return takes_part ? msri_rows_run(&s->pass, object, &part) : 0;
+  if (parts == 1) {
+    part.memory = &s->worker[thread].rows;
+    return thread == owner ? msri_rows_run(&s->pass, object, &part) : 0;
+  }
+  part.turn = ++*turn;
+  part.number = thread;
+  if (thread < parts) return run_part(s, object, &part);
+  atomic_store_explicit(&s->closed[thread], part.turn, memory_order_release);
+  return 0;
 }
 
 static void work(void *self, unsigned thread) {
