@@ -76,9 +76,12 @@ LANES_FN lanes move(const msri_motion *motion, int axis, const msri_task *task, 
   return v;
 }
 
-/* Goes on from `place`, while there are as many cells as lanes. */
-LANES_FN void go(const msri_cells *s, const msri_motion *motion, const msri_task *task,
-                 msri_place *place) {
+/* Goes on from `place`, while there are as many cells as lanes. Copies let compilers see that no
+ * store changes a pointer. */
+LANES_FN void go(const msri_cells *all_cells, const msri_motion *whole_motion,
+                 const msri_task *task, msri_place *place) {
+  const msri_cells cells = *all_cells, *const s = &cells;
+  const msri_motion the_motion = *whole_motion, *const motion = &the_motion;
   pair left = {lanes_all(place->left[0]), lanes_all(place->left[1])};
   lanes fastest = lanes_all(place->fastest);
   size_t c = place->cell;

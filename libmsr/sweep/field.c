@@ -1,6 +1,7 @@
 /* field.c - see field.h. */
 #include "sweep/field.h"
 
+#include "base/machine.h"
 #include "base/vector.h"
 
 #include <string.h>
@@ -15,26 +16,29 @@ msri_field msri_field_place(int ways, size_t stride, double *memory) {
 
 /* ---- Masses */
 
-static void clear(double *to, size_t from, size_t end) {
-  memset(to + from, 0, (end - from) * sizeof *to);
-}
+static void clear(double *to, size_t from, size_t n) { memset(to + from, 0, n * sizeof *to); }
 
-static void copy(double *to, const double *from, size_t n) { memcpy(to, from, n * sizeof *to); }
+/* Most spans are short: calls would take longer than copies. */
+MSRI_INLINE void copy(double *to, const double *from, size_t n) {
+  for (; n >= 8; n -= 8, to += 8, from += 8) memcpy(to, from, 8 * sizeof *to);
+  for (size_t few = 4; few > 0; few /= 2) {
+    if (n < few) continue;
+    memcpy(to, from, few * sizeof *to);
+    n -= few, to += few, from += few;
+  }
+}
 
 void msri_field_fill(const msri_field *f, const msri_objects *objects, size_t row,
                      const msri_swept *from, size_t at, size_t width) {
-  const double *const source[] = {from->x, from->y, from->vx, from->vy};
-  double *const array[] = {f->x, f->y, f->vx, f->vy};
-  for (int n = 0; n < 4; n++) {
-    size_t done = at;
-    for (size_t s = objects->row[row]; s < objects->row[row + 1]; s++) {
-      const msri_span *span = &objects->span[s];
-      const size_t begin = at + span->column;
-      clear(array[n], done, begin);
-      copy(array[n] + begin, source[n] + span->first, span->count);
-      done = begin + span->count;
-    }
-    clear(array[n], done, at + width);
+  clear(f->x, at, width), clear(f->y, at, width);
+  clear(f->vx, at, width), clear(f->vy, at, width);
+  for (size_t s = objects->row[row]; s < objects->row[row + 1]; s++) {
+    const msri_span *span = &objects->span[s];
+    const size_t begin = at + span->column, n = span->count;
+    copy(f->x + begin, from->x + span->first, n);
+    copy(f->y + begin, from->y + span->first, n);
+    copy(f->vx + begin, from->vx + span->first, n);
+    copy(f->vy + begin, from->vy + span->first, n);
   }
 }
 
@@ -52,34 +56,27 @@ void msri_field_empty(const msri_field *f, const msri_objects *objects, size_t r
 
 /* ---- Springs */
 
-static void set(double *k, size_t from, size_t end, double value) {
-  for (size_t c = from; c < end; c++) k[c] = value;
-}
-
-/* From cells of a span to those of the row below, `shift` columns to the right. */
-static void tie_below(double *k, size_t at, const msri_span *span, const msri_objects *objects,
-                      size_t below, int shift, double value) {
-  const ptrdiff_t begin = span->column, end = begin + span->count;
-  for (size_t s = objects->row[below]; s < objects->row[below + 1]; s++) {
-    const msri_span *other = &objects->span[s];
-    const ptrdiff_t first = (ptrdiff_t)other->column - shift, last = first + other->count;
-    if (first >= end) return;
-    const ptrdiff_t a = first > begin ? first : begin, b = last < end ? last : end;
-    if (a < b) set(k, at + (size_t)a, at + (size_t)b, value);
-  }
-}
-
-void msri_field_tie(const msri_field *f, const msri_objects *objects, size_t row, bool last,
-                    double k, int ways, size_t at, size_t width) {
-  static const int shift[MSRI_WAYS] = {[MSRI_BELOW_LEFT] = -1, [MSRI_BELOW_RIGHT] = 1};
-  for (int way = 0; way < ways; way++) clear(f->k[way], at, at + width);
+void msri_field_mark(double *marks, const msri_objects *objects, size_t row, double k,
+                     size_t width) {
+  memset(marks - 1, 0, (width + 2) * sizeof *marks);
   for (size_t s = objects->row[row]; s < objects->row[row + 1]; s++) {
     const msri_span *span = &objects->span[s];
-    const size_t begin = at + span->column;
-    set(f->k[MSRI_RIGHT], begin, begin + span->count - 1, k);
-    for (int way = MSRI_BELOW; way < ways && !last; way++)
-      tie_below(f->k[way], at, span, objects, row + 1, shift[way], k);
+    for (size_t c = 0; c < span->count; c++) marks[span->column + c] = k;
   }
+}
+
+/* k where both have a mass. */
+static void tie(size_t n, const double *restrict a, const double *restrict b, double *restrict k) {
+  for (size_t c = 0; c < n; c++) k[c] = a[c] < b[c] ? a[c] : b[c];
+}
+
+void msri_field_tie(const msri_field *f, const double *marks, const double *below, int ways,
+                    size_t at, size_t width) {
+  tie(width, marks, marks + 1, f->k[MSRI_RIGHT] + at);
+  tie(width, marks, below, f->k[MSRI_BELOW] + at);
+  if (ways < MSRI_WAYS) return;
+  tie(width, marks, below - 1, f->k[MSRI_BELOW_LEFT] + at);
+  tie(width, marks, below + 1, f->k[MSRI_BELOW_RIGHT] + at);
 }
 
 /* ---- Steps */

@@ -34,9 +34,14 @@ void msri_field_fill(const msri_field *f, const msri_objects *objects, size_t ro
 void msri_field_empty(const msri_field *f, const msri_objects *objects, size_t row,
                       const msri_swept *to, size_t at);
 
-/* Stiffness of the springs from a row's cells; `last`: there is no row below. */
-void msri_field_tie(const msri_field *f, const msri_objects *objects, size_t row, bool last,
-                    double k, int ways, size_t at, size_t width);
+/* k where a row has a mass, in marks[width]; 0 elsewhere, from -1 to width. */
+void msri_field_mark(double *marks, const msri_objects *objects, size_t row, double k,
+                     size_t width);
+
+/* Stiffness of the springs from a row's cells `at` + column, by its marks and those of the row
+ * below. */
+void msri_field_tie(const msri_field *f, const double *marks, const double *below, int ways,
+                    size_t at, size_t width);
 
 /* Does a stage to cells. Returns the largest velocity along an axis; 0 if they only drift. */
 double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells);

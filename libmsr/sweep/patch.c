@@ -14,20 +14,33 @@ size_t msri_patch_cells(const msri_object *object) { return object->rows * lengt
  */
 static size_t stride(size_t cells, size_t row) { return cells + row + 2 * MSRI_MARGIN; }
 
+static size_t marks_size(const msri_object *object) {
+  return 2 * (length(object) + 2 * MSRI_MARGIN);
+}
+
 size_t msri_patch_size(int ways, const msri_object *object) {
   const size_t pulls = 2 * (size_t)(ways - MSRI_BELOW);
   const size_t all = stride(msri_patch_cells(object), length(object));
-  return msri_field_size(ways, all) + pulls * all;
+  return msri_field_size(ways, all) + pulls * all + marks_size(object);
 }
 
-static void fill(const msri_pass *pass, const msri_object *object, const msri_field *f) {
+/* Marks of a row and of the one below it take turns. */
+static void fill(const msri_pass *pass, const msri_object *object, const msri_field *f,
+                 double *marks) {
   const msri_objects *objects = &pass->plan->objects;
-  const size_t row = length(object);
+  const size_t row = length(object), wide = row + 2 * MSRI_MARGIN;
+  const double k = pass->plan->mesh.lattice_k;
+  double *const turn[] = {marks + MSRI_MARGIN, marks + wide + MSRI_MARGIN};
+  msri_field_mark(turn[0], objects, object->row, k, row);
   for (size_t r = 0; r < object->rows; r++) {
     const size_t at = MSRI_MARGIN + r * row;
+    double *here = turn[r % 2], *below = turn[(r + 1) % 2];
     msri_field_fill(f, objects, object->row + r, pass->state, at, row);
-    msri_field_tie(f, objects, object->row + r, r + 1 == object->rows, pass->plan->mesh.lattice_k,
-                   pass->ways, at, row);
+    if (r + 1 < object->rows)
+      msri_field_mark(below, objects, object->row + r + 1, k, row);
+    else
+      memset(below - 1, 0, (row + 2) * sizeof *below);
+    msri_field_tie(f, here, below, pass->ways, at, row);
   }
 }
 
@@ -67,7 +80,7 @@ double msri_patch_run(const msri_pass *pass, const msri_object *object, double *
   const msri_field f = msri_field_place(pass->ways, all, memory);
   msri_cells cells = cells_of(&f, object, pass->ways);
   place_pulls(pass, object, memory + msri_field_size(pass->ways, all), &cells);
-  fill(pass, object, &f);
+  fill(pass, object, &f, memory + msri_patch_size(pass->ways, object) - marks_size(object));
   double fastest = 0;
   for (int s = 0; s < pass->stages; s++)
     fastest = msri_max(msri_field_step(pass, &pass->stage[s], &cells), fastest);

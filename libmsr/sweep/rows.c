@@ -23,7 +23,8 @@ typedef struct wave {
   size_t row[ROWS];    /* in the ring; none */
   msri_field at[ROWS]; /* where they are: in the ring or, if they are, `in_place` */
   bool in_place[ROWS];
-  double *ring, *pulls, *ties, *edge;
+  double *ring, *pulls, *ties, *edge, *marks;
+  size_t marked[2]; /* rows whose marks are known; none */
   double fastest;
 } wave;
 
@@ -42,10 +43,12 @@ static size_t pulls_size(int ways, size_t width, int stages) {
 
 static size_t ties_size(size_t width) { return 4 * wide(width); }
 
+static size_t marks_size(size_t width) { return 2 * wide(width); }
+
 /* The edge comes first: others look there. */
 size_t msri_rows_size(int ways, size_t width, int stages) {
   return edge_size(width, stages) + pulls_size(ways, width, stages) + ties_size(width) +
-         (size_t)(stages + 3) * msri_field_size(ways, wide(width));
+         marks_size(width) + (size_t)(stages + 3) * msri_field_size(ways, wide(width));
 }
 
 int msri_rows_stages(int ways, size_t width) {
@@ -91,15 +94,27 @@ static msri_field row_in_place(const wave *w, size_t row) {
 
 static size_t slot_of(const wave *w, size_t row) { return row % (size_t)(w->pass->stages + 3); }
 
-static msri_field row_in_ring(const wave *w, size_t row) {
+/* Where a row has masses; below the last one there are none. */
+static const double *marks_of(wave *w, size_t row) {
+  const size_t turn = row % 2, n = w->object->width;
+  double *marks = w->marks + turn * w->wide + MSRI_MARGIN;
+  if (w->marked[turn] == row) return marks;
+  w->marked[turn] = row;
+  if (row < w->object->rows)
+    msri_field_mark(marks, &w->pass->plan->objects, w->object->row + row,
+                    w->pass->plan->mesh.lattice_k, n);
+  else
+    memset(marks - 1, 0, (n + 2) * sizeof *marks);
+  return marks;
+}
+
+static msri_field row_in_ring(wave *w, size_t row) {
   const int ways = w->pass->ways;
-  const size_t slot = slot_of(w, row), size = msri_field_size(ways, w->wide);
-  msri_field f = msri_field_place(ways, w->wide, w->ring + slot * size);
-  const msri_objects *o = &w->pass->plan->objects;
-  const size_t n = w->object->width;
-  msri_field_fill(&f, o, w->object->row + row, w->pass->state, MSRI_MARGIN, n);
-  msri_field_tie(&f, o, w->object->row + row, row + 1 == w->object->rows,
-                 w->pass->plan->mesh.lattice_k, ways, MSRI_MARGIN, n);
+  const size_t n = w->object->width, size = msri_field_size(ways, w->wide);
+  msri_field f = msri_field_place(ways, w->wide, w->ring + slot_of(w, row) * size);
+  msri_field_fill(&f, &w->pass->plan->objects, w->object->row + row, w->pass->state, MSRI_MARGIN,
+                  n);
+  msri_field_tie(&f, marks_of(w, row), marks_of(w, row + 1), ways, MSRI_MARGIN, n);
   f.x += MSRI_MARGIN, f.y += MSRI_MARGIN, f.vx += MSRI_MARGIN, f.vy += MSRI_MARGIN;
   for (int way = 0; way < ways; way++) f.k[way] += MSRI_MARGIN;
   return f;
@@ -307,7 +322,9 @@ double msri_rows_run(const msri_pass *pass, const msri_object *object, const msr
   w.edge = memory;
   w.pulls = w.edge + edge_size(width, pass->stages);
   w.ties = w.pulls + pulls_size(pass->ways, width, pass->stages);
-  w.ring = w.ties + ties_size(width);
+  w.marks = w.ties + ties_size(width);
+  w.marked[0] = w.marked[1] = none;
+  w.ring = w.marks + marks_size(width);
   for (int n = 0; n < ROWS; n++) w.row[n] = none;
   set_ties(&w);
   run(&w);
