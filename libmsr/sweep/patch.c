@@ -74,17 +74,19 @@ static msri_cells cells_of(const msri_field *f, const msri_object *object, int w
   return cells;
 }
 
-double msri_patch_run(const msri_pass *pass, const msri_object *object, double *memory) {
+double msri_patch_run(const msri_pass *pass, const msri_object *object, bool filled, bool kept,
+                      double *memory) {
   const msri_objects *objects = &pass->plan->objects;
   const size_t all = stride(msri_patch_cells(object), length(object));
   const msri_field f = msri_field_place(pass->ways, all, memory);
   msri_cells cells = cells_of(&f, object, pass->ways);
   place_pulls(pass, object, memory + msri_field_size(pass->ways, all), &cells);
-  fill(pass, object, &f, memory + msri_patch_size(pass->ways, object) - marks_size(object));
+  if (!filled)
+    fill(pass, object, &f, memory + msri_patch_size(pass->ways, object) - marks_size(object));
   double fastest = 0;
   for (int s = 0; s < pass->stages; s++)
     fastest = msri_max(msri_field_step(pass, &pass->stage[s], &cells), fastest);
-  for (size_t r = 0; r < object->rows; r++)
+  for (size_t r = 0; r < object->rows && !kept; r++)
     msri_field_empty(&f, objects, object->row + r, pass->state, MSRI_MARGIN + r * length(object));
   return fastest;
 }

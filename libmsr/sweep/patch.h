@@ -12,7 +12,9 @@ size_t msri_patch_cells(const msri_object *object);
 /* Doubles of memory for an object. */
 size_t msri_patch_size(int ways, const msri_object *object);
 
-/* Takes an object through all stages of a pass. Returns the largest speed along an axis. */
-double msri_patch_run(const msri_pass *pass, const msri_object *object, double *memory);
+/* Takes an object through all stages of a pass; what is in memory is `filled` with it already, or
+ * is to be `kept` for the next pass. Returns the largest speed along an axis. */
+double msri_patch_run(const msri_pass *pass, const msri_object *object, bool filled, bool kept,
+                      double *memory);
 
 #endif

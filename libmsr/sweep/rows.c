@@ -13,16 +13,31 @@ enum { ROWS = MSRI_MOST_STAGES + 3 }; /* of the ring: those of the wave, and one
 static const size_t cache = 640 * 1024; /* bytes of a core's own, what else is needed left out */
 static const size_t none = SIZE_MAX;
 
-/* Where a part's work is. */
+/* Neighbouring spans of a row with few cells between them: columns from .. to-1. */
+typedef struct island {
+  size_t from, to;
+  size_t next; /* span */
+} island;
+
+enum { NEAR = 16 };
+
+/* A row that is worked on, and the first of its islands. */
+typedef struct slot {
+  size_t row; /* none */
+  bool in_place, single;
+  msri_field at;
+  island first;
+} slot;
+
+/* A part's work. */
 typedef struct wave {
   const msri_pass *pass;
   const msri_object *object;
   const msri_part *part;
-  size_t wide;         /* cells of a row with what is around them */
-  bool whole;          /* rectangle */
-  size_t row[ROWS];    /* in the ring; none */
-  msri_field at[ROWS]; /* where they are: in the ring or, if they are, `in_place` */
-  bool in_place[ROWS];
+  size_t wide; /* cells of a row with what is around them */
+  bool whole;  /* rectangle */
+  bool in_place;
+  slot slot[ROWS];
   double *ring, *pulls, *ties, *edge, *marks;
   size_t marked[2]; /* rows whose marks are known; none */
   double fastest;
@@ -92,7 +107,7 @@ static msri_field row_in_place(const wave *w, size_t row) {
 
 /* ---- The ring */
 
-static size_t slot_of(const wave *w, size_t row) { return row % (size_t)(w->pass->stages + 3); }
+static size_t place_of(const wave *w, size_t row) { return row % (size_t)(w->pass->stages + 3); }
 
 /* Where a row has masses; below the last one there are none. */
 static const double *marks_of(wave *w, size_t row) {
@@ -111,7 +126,7 @@ static const double *marks_of(wave *w, size_t row) {
 static msri_field row_in_ring(wave *w, size_t row) {
   const int ways = w->pass->ways;
   const size_t n = w->object->width, size = msri_field_size(ways, w->wide);
-  msri_field f = msri_field_place(ways, w->wide, w->ring + slot_of(w, row) * size);
+  msri_field f = msri_field_place(ways, w->wide, w->ring + place_of(w, row) * size);
   msri_field_fill(&f, &w->pass->plan->objects, w->object->row + row, w->pass->state, MSRI_MARGIN,
                   n);
   msri_field_tie(&f, marks_of(w, row), marks_of(w, row + 1), ways, MSRI_MARGIN, n);
@@ -125,32 +140,6 @@ static bool is_at_border(const wave *w, size_t row) {
   const msri_part *part = w->part;
   return part->number + 1 < part->parts && row + 1 >= part->begin[part->number + 1];
 }
-
-static const msri_field *open_row(wave *w, size_t row) {
-  const size_t slot = slot_of(w, row);
-  if (w->row[slot] == row) return &w->at[slot];
-  w->row[slot] = row;
-  w->in_place[slot] = w->whole && !is_at_border(w, row);
-  w->at[slot] = w->in_place[slot] ? row_in_place(w, row) : row_in_ring(w, row);
-  return &w->at[slot];
-}
-
-static void close_row(wave *w, size_t row) {
-  const size_t slot = slot_of(w, row);
-  w->row[slot] = none;
-  if (w->in_place[slot]) return;
-  msri_field_empty(&w->at[slot], &w->pass->plan->objects, w->object->row + row, w->pass->state, 0);
-}
-
-/* ---- Cells */
-
-/* Neighbouring spans with few cells between them: from .. to-1. */
-typedef struct island {
-  size_t from, to;
-  size_t next; /* span */
-} island;
-
-enum { NEAR = 16 };
 
 /* The first island of a row from span s on. */
 static bool find_island(const wave *w, size_t row, size_t s, island *i) {
@@ -168,6 +157,26 @@ static bool find_island(const wave *w, size_t row, size_t s, island *i) {
 static size_t first_span(const wave *w, size_t row) {
   return w->pass->plan->objects.row[w->object->row + row];
 }
+
+static const slot *open_row(wave *w, size_t row) {
+  slot *s = &w->slot[place_of(w, row)];
+  if (s->row == row) return s;
+  s->row = row;
+  s->in_place = w->in_place && !is_at_border(w, row);
+  s->at = s->in_place ? row_in_place(w, row) : row_in_ring(w, row);
+  find_island(w, row, first_span(w, row), &s->first);
+  s->single = s->first.next == first_span(w, row + 1);
+  return s;
+}
+
+static void close_row(wave *w, size_t row, bool changed) {
+  slot *s = &w->slot[place_of(w, row)];
+  s->row = none;
+  if (s->in_place || !changed) return;
+  msri_field_empty(&s->at, &w->pass->plan->objects, w->object->row + row, w->pass->state, 0);
+}
+
+/* ---- Cells */
 
 /* Of a row at a stage; where MSRI_BELOW_RIGHT is, those of the row before are kept, too. */
 static msri_pull pull_at(const wave *w, int stage, size_t row, int way) {
@@ -188,10 +197,10 @@ static void clear_pulls(const wave *w, int stage, size_t row, size_t a, size_t b
 }
 
 /* No forces to where the row below will look for some, but where this row has cells. */
-static void clear_rest(const wave *w, int stage, size_t row) {
+static void clear_rest(const wave *w, int stage, size_t row, island here) {
   const size_t beyond = w->pass->ways == MSRI_WAYS ? 1 : 0;
-  island below = {.next = first_span(w, row + 1)}, here = {.next = first_span(w, row)};
-  bool more = find_island(w, row, here.next, &here);
+  island below = {.next = first_span(w, row + 1)};
+  bool more = true;
   while (find_island(w, row + 1, below.next, &below)) {
     size_t done = below.from < beyond ? 0 : below.from - beyond;
     const size_t end = below.to + beyond;
@@ -202,6 +211,23 @@ static void clear_rest(const wave *w, int stage, size_t row) {
     }
     clear_pulls(w, stage, row, done, end);
   }
+}
+
+/* The same where both are single islands. */
+static void clear_sides(const wave *w, int stage, size_t row, const island *here,
+                        const island *below) {
+  const size_t beyond = w->pass->ways == MSRI_WAYS ? 1 : 0;
+  const size_t from = below->from < beyond ? 0 : below->from - beyond, to = below->to + beyond;
+  clear_pulls(w, stage, row, from, here->from < to ? here->from : to);
+  clear_pulls(w, stage, row, here->to > from ? here->to : from, to);
+}
+
+static void clear_around(const wave *w, int stage, size_t row, const slot *here,
+                         const slot *below) {
+  if (below && here->single && below->single)
+    clear_sides(w, stage, row, &here->first, &below->first);
+  else
+    clear_rest(w, stage, row, here->first);
 }
 
 static msri_cells cells_of(const wave *w, int stage, size_t row, const island *i,
@@ -244,55 +270,41 @@ static double *edge_at(const wave *w, double *edge, int stage) {
   return edge + 2 * (size_t)stage * w->wide + MSRI_MARGIN;
 }
 
-/* Where the row below is, at this stage. */
-static void look_below(wave *w, int stage, size_t row, const double **x, const double **y) {
-  const msri_part *part = w->part;
-  if (row + 1 == end_row(w, stage) && part->number + 1 < part->parts) {
-    *x = edge_at(w, part->memory[part->number + 1], stage);
-    *y = *x + w->wide;
-    return;
-  }
-  const msri_field *f = open_row(w, row + 1 < w->object->rows ? row + 1 : row);
-  *x = f->x, *y = f->y;
+/* Has the part below been at the row below before this stage? */
+static bool is_left_behind(const wave *w, int stage, size_t row) {
+  return row + 1 == end_row(w, stage) && w->part->number + 1 < w->part->parts;
 }
 
 static void step_row(wave *w, int stage, size_t row, bool pulls_only) {
   const msri_pass *pass = w->pass;
-  const msri_field f = *open_row(w, row);
-  const double *x, *y;
-  island i = {.next = first_span(w, row)};
-  find_island(w, row, i.next, &i);
-  if (pulls_only) {
-    x = open_row(w, row + 1)->x, y = open_row(w, row + 1)->y;
-  } else {
-    look_below(w, stage, row, &x, &y);
-  }
+  const bool last = row + 1 == w->object->rows;
+  const bool behind = !pulls_only && is_left_behind(w, stage, row);
+  const slot *here = open_row(w, row), *below = last || behind ? NULL : open_row(w, row + 1);
+  const double *edge = behind ? edge_at(w, w->part->memory[w->part->number + 1], stage) : NULL;
+  const double *x = edge ? edge : below ? below->at.x : here->at.x;
+  const double *y = edge ? edge + w->wide : below ? below->at.y : here->at.y;
+  island i = here->first;
   do {
-    const msri_cells cells = cells_of(w, stage, row, &i, &f, x, y);
+    const msri_cells cells = cells_of(w, stage, row, &i, &here->at, x, y);
     if (pulls_only)
       pass->kernel->of[pass->ways > MSRI_BELOW + 1].pull(&cells, &pass->stage[stage].motion);
     else
       w->fastest = msri_max(msri_field_step(pass, &pass->stage[stage], &cells), w->fastest);
-  } while (find_island(w, row, i.next, &i));
-  if (row + 1 < w->object->rows && pass->stage[stage].forces) clear_rest(w, stage, row);
+  } while (!here->single && find_island(w, row, i.next, &i));
+  if (!last && !w->whole && pass->stage[stage].forces) clear_around(w, stage, row, here, below);
 }
 
-/* Before a stage of a part begins: the forces from the row above, which stays behind; and where its
- * first row is now, for the part above. */
+/* Before a stage of a part but the first begins: the forces from the row above, which stays behind;
+ * and where its first row is now, for the part above. */
 static void begin_stage(wave *w, int stage) {
   const size_t row = first_row(w, stage), n = w->object->width;
-  if (w->part->number == 0) {
-    const size_t doubles = pulls_of_row(w->pass->ways) * w->wide;
-    memset(w->pulls + (size_t)stage * doubles, 0, doubles * sizeof(double));
-    return;
-  }
-  const msri_field *f = open_row(w, row);
+  if (w->part->number == 0) return;
+  const msri_field *f = &open_row(w, row)->at;
   double *x = edge_at(w, w->edge, stage), *y = x + w->wide;
   memcpy(x, f->x, n * sizeof *x);
   memcpy(y, f->y, n * sizeof *y);
   if (w->pass->stage[stage].forces) step_row(w, stage, row - 1, true);
-  if (stage > 0) close_row(w, row - 1);
-  if (stage == 0) w->row[slot_of(w, row - 1)] = none;
+  close_row(w, row - 1, stage > 0);
   if (stage + 1 == w->pass->stages)
     atomic_store_explicit(&w->part->opened[w->part->number], w->part->turn, memory_order_release);
 }
@@ -309,7 +321,7 @@ static void run(wave *w) {
       if (row >= end_row(w, s)) continue;
       if (row == first_row(w, s)) begin_stage(w, s);
       step_row(w, s, row, false);
-      if (s + 1 == w->pass->stages) close_row(w, row);
+      if (s + 1 == w->pass->stages) close_row(w, row, true);
     }
   }
 }
@@ -319,14 +331,16 @@ double msri_rows_run(const msri_pass *pass, const msri_object *object, const msr
   double *memory = part->memory[part->number];
   wave w = {.pass = pass, .object = object, .part = part, .wide = wide(width)};
   w.whole = object->masses == object->rows * width;
+  w.in_place = w.whole;
   w.edge = memory;
   w.pulls = w.edge + edge_size(width, pass->stages);
   w.ties = w.pulls + pulls_size(pass->ways, width, pass->stages);
   w.marks = w.ties + ties_size(width);
   w.marked[0] = w.marked[1] = none;
   w.ring = w.marks + marks_size(width);
-  for (int n = 0; n < ROWS; n++) w.row[n] = none;
-  set_ties(&w);
+  for (int n = 0; n < ROWS; n++) w.slot[n].row = none;
+  memset(w.pulls, 0, pulls_size(pass->ways, width, pass->stages) * sizeof *w.pulls);
+  if (w.in_place) set_ties(&w);
   run(&w);
   return w.fastest;
 }

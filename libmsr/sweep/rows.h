@@ -5,7 +5,7 @@
 
 #include "sweep/field.h"
 
-enum { MSRI_MOST_STAGES = 16 };
+enum { MSRI_MOST_STAGES = 32 };
 
 /* A part of an object's rows, for one thread. Stage s of part p goes over rows begin[p] + s up to
  * begin[p+1] + s: each part leaves a wedge to the one above, which finds there the rows as they

@@ -35,6 +35,8 @@ struct msri_sweep {
   _Atomic unsigned *opened; /* [threads]: wedges that each has left to the one above, */
   _Atomic unsigned *closed; /* [threads] and parts that each has done */
   unsigned turn;            /* of objects that were shared so far */
+  bool alone;               /* no thread has more than one object: */
+  bool filled, kept;        /* small ones stay in their patches from one pass to the next */
   msri_stage stage[MSRI_MOST_STAGES];
 };
 
@@ -163,6 +165,7 @@ msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error
   if (!made) return MSR_ENOMEM;
   made->threads = plan->threads;
   made->depth = r.depth;
+  made->alone = plan->objects.n <= plan->threads;
   made->pass = (msri_pass){.plan = plan,
                            .kernel = msri_lattice_widest(),
                            .stage = made->stage,
@@ -225,7 +228,7 @@ static void work(void *self, unsigned thread) {
     if (!is_small(s->pass.plan, object))
       fastest = run_large(s, object, thread, owner, &turn);
     else if (owner == thread)
-      fastest = msri_patch_run(&s->pass, object, me->patch);
+      fastest = msri_patch_run(&s->pass, object, s->filled, s->kept, me->patch);
     me->fastest = msri_worse(fastest, me->fastest);
   }
   me->turn = turn;
@@ -255,7 +258,10 @@ msri_progress msri_sweep_run(msri_sweep *s, const msri_swept *state, msri_course
       progress.evaluations += s->stage[n].kicks;
     }
     s->pass.stages = n;
-    if (run_pass(s) <= fastest || progress.fast || k == end) continue;
+    s->kept = s->alone && k < end;
+    const double speed = run_pass(s);
+    s->filled = s->kept;
+    if (speed <= fastest || progress.fast || k == end) continue;
     progress.fast = true; /* the step that is under way is the last */
     course.steps = (k + drifts - 1) / drifts;
     end = msri_course_stages(&course);
