@@ -156,6 +156,46 @@ static void springs_are_in_their_order(void **unused) {
   }
 }
 
+/* By bands of 1024 masses, offsets, masses, then values. */
+static int in_order(const void *a, const void *b) {
+  const tie *p = a, *q = b;
+  const double order[] = {(double)(p->i / 1024) - (double)(q->i / 1024),
+                          (double)(p->j - p->i) - (double)(q->j - q->i),
+                          (double)p->i - (double)q->i, p->k - q->k, p->L - q->L};
+  for (size_t n = 0; n < LENGTH(order); n++)
+    if (order[n] < 0 || order[n] > 0) return order[n] < 0 ? -1 : 1;
+  return 0;
+}
+
+static void added_springs_are_sorted(void **unused) {
+  (void)unused;
+  enum { TWINS = 100 }; // springs between the same two masses, as stiff
+  const mesh m = {.masses = 5000, .springs = 20000, .seed = 13};
+  const size_t springs = m.springs + TWINS;
+  tie *due = zeroed(springs, sizeof *due);
+  msr_scene *scene = random_mesh(&m, due);
+  for (size_t n = m.springs; n < springs; n++) {
+    due[n] = (tie){8, 9, 7, (double)(n * 37 % TWINS)};
+    must(msr_scene_add_spring(scene, due[n].i, due[n].j, due[n].k, due[n].L, &why));
+  }
+  world w = open_world(scene, NULL, 0);
+  for (size_t n = 0; n < springs; n++)
+    if (due[n].i > due[n].j) due[n] = (tie){due[n].j, due[n].i, due[n].k, due[n].L};
+  qsort(due, springs, sizeof *due, in_order);
+  const msr_springs *made = msr_state_view(w.state).springs;
+  size_t n = 0;
+  for (size_t r = 0; r < made->n_runs; r++) {
+    const msr_run_of_springs *run = &made->run[r];
+    for (size_t s = 0; s < run->count; s++, n++) {
+      assert_true(run->first + s == due[n].i && run->first + s + run->offset == due[n].j);
+      assert_true(run->k[s * run->stride] == due[n].k && run->L[s * run->stride] == due[n].L);
+    }
+  }
+  assert_int_equal(n, springs);
+  free(due);
+  close_world(w);
+}
+
 /* ---- Bounds: all row sums at once, in the order of the springs */
 
 static double bound_at_once(const msr_view *s, const double *weight) {
@@ -351,6 +391,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(masses_are_found_where_they_are),
       cmocka_unit_test(springs_are_in_their_order),
+      cmocka_unit_test(added_springs_are_sorted),
       cmocka_unit_test(bounds_need_not_all_rows_at_once),
       cmocka_unit_test(pictures_take_colours_and_runs),
       cmocka_unit_test(what_is_alike_is_kept_once),

@@ -4,21 +4,34 @@
 #include "plan/mesh.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { BAND = 1024 };
 
 #define COMPARE(a, b)                                                                              \
   if ((a) != (b)) return (a) < (b) ? -1 : 1
 
-static int by_band_offset_and_first(const void *a, const void *b) {
+static int by_offset_and_first(const void *a, const void *b) {
   const msri_scene_spring *p = a, *q = b;
-  COMPARE(p->i / BAND, q->i / BAND);
   COMPARE(p->j - p->i, q->j - q->i);
   COMPARE(p->i, q->i);
   COMPARE(p->k, q->k);
   COMPARE(p->L, q->L);
   return 0;
+}
+
+/* The scene's springs band by band: a counting sort first, so that what remains is small. */
+static msr_status sort(const msr_scene *scene, msri_scene_spring *sorted, msr_error *err) {
+  const size_t bands = msr_scene_masses(scene) / BAND + 1;
+  size_t *end = msri_alloc(bands + 1, sizeof *end, "the springs", err);
+  if (!end) return MSR_ENOMEM;
+  const msri_scene_spring *s = scene->spring, *const last = s + scene->n_springs;
+  for (; s < last; s++) end[s->i / BAND + 1]++;
+  for (size_t b = 0; b < bands; b++) end[b + 1] += end[b];
+  for (s = scene->spring; s < last; s++) sorted[end[s->i / BAND]++] = *s;
+  for (size_t b = 0, begin = 0; b < bands; begin = end[b++])
+    qsort(sorted + begin, end[b] - begin, sizeof *sorted, by_offset_and_first);
+  free(end);
+  return MSR_OK;
 }
 
 /* Springs first .. end-1 of those that are sorted: a run. */
@@ -84,9 +97,8 @@ msr_status msri_mesh_tie_added(msri_mesh *mesh, const msr_scene *scene, msr_erro
   if (n == 0) return MSR_OK;
   msri_scene_spring *sorted = msri_alloc(n, sizeof *sorted, "the springs", err);
   if (!sorted) return MSR_ENOMEM;
-  memcpy(sorted, scene->spring, n * sizeof *sorted);
-  qsort(sorted, n, sizeof *sorted, by_band_offset_and_first);
-  msr_status status = allot(mesh, sorted, n, err);
+  msr_status status = sort(scene, sorted, err);
+  if (status == MSR_OK) status = allot(mesh, sorted, n, err);
   if (status == MSR_OK) status = tie(mesh, sorted, n, err);
   free(sorted);
   return status;
