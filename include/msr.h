@@ -170,6 +170,8 @@ typedef struct msr_force {
   bool dissipative;    /* F.v <= 0 always: it can only take energy away */
   bool uses_velocity;  /* F depends on v */
   bool uses_time;      /* F depends on t */
+  bool ignores_start;  /* idle, describe, prepare and rates never read x, y, vx and vy of s, which
+                        * may be NULL there: a plan then needs no room for them */
   size_t params_size;  /* bytes that msr_scene_add_force copies */
   size_t scratch_size; /* bytes of memory of its own in each state, zeroed at first: caches */
 
@@ -615,8 +617,10 @@ typedef struct msr_plan_figures {
                        * of implicit methods there, and of symplectic ones, the same of 2 / omega */
   double omega;       /* bound of the angular frequencies, at any stretch [1/s] (Gershgorin) */
   double gamma;       /* bound of the rates of damping that limit the step [1/s] */
-  size_t plan_bytes, state_bytes; /* of memory; what a state allocates once steps of `care` begin,
-                                   * as much as implicit methods take, isn't counted */
+  size_t plan_bytes, state_bytes; /* of memory; the picture, 3 bytes a pixel, counts as the plan's
+                                   * though its scene and other plans of it share it; what a state
+                                   * allocates once steps of `care` begin, as much as implicit
+                                   * methods take, isn't counted */
 } msr_plan_figures;
 MSR_API msr_plan_figures msr_plan_describe(const msr_plan *plan);
 

@@ -150,6 +150,40 @@ static void rates_are_upper_bounds(void **state) {
   on_all_meshes(check_rates);
 }
 
+/* What planning asks of a force, in words and numbers, and what it does then. */
+typedef struct answers {
+  bool idle;
+  char text[2][MSR_MESSAGE_SIZE];
+  double rates[2], f[2 * MOST];
+} answers;
+
+static answers ask(const msr_force *force, const msr_view *start, const msr_view *s) {
+  answers all = {0};
+  const void *params = trial_params(force);
+  actor a = prepare(force, params, start);
+  if (force->idle) all.idle = force->idle(params, start, all.text[0], sizeof all.text[0]);
+  if (force->describe) force->describe(params, start, all.text[1], sizeof all.text[1]);
+  if (force->rates) must(force->rates(a.self, start, &all.rates[0], &all.rates[1]));
+  act(&a, s, all.f);
+  dismiss(&a);
+  return all;
+}
+
+/* What says that it ignores the start says the same without one. */
+static void check_ignorance(const actor *a, const mesh *m, const msr_view *s) {
+  (void)m;
+  msr_view nowhere = *s;
+  nowhere.x = nowhere.y = nowhere.vx = nowhere.vy = NULL;
+  if (!a->force->ignores_start) return;
+  const answers here = ask(a->force, s, s), there = ask(a->force, &nowhere, s);
+  assert_memory_equal(&here, &there, sizeof here);
+}
+
+static void what_ignores_the_start_needs_none(void **state) {
+  (void)state;
+  on_all_meshes(check_ignorance);
+}
+
 /* ---- Flows */
 
 /* v by h under the force alone, by steps of the midpoint rule. */
@@ -358,6 +392,7 @@ int main(void) {
       cmocka_unit_test(dissipative_forces_only_take),
       cmocka_unit_test(forces_depend_on_what_they_declare),
       cmocka_unit_test(rates_are_upper_bounds),
+      cmocka_unit_test(what_ignores_the_start_needs_none),
       cmocka_unit_test(flows_follow_their_forces),
       cmocka_unit_test(backward_flows_undo_forward_ones),
       cmocka_unit_test(internal_forces_and_torques_cancel),

@@ -31,6 +31,11 @@ void *msri_grow(void *block, size_t *capacity, size_t count, size_t size, const 
 static inline double msri_min(double a, double b) { return a < b ? a : b; }
 static inline double msri_max(double a, double b) { return a > b ? a : b; }
 
+/* Masses 0 .. of the view's that may differ: one stands for all if all are equal. */
+static inline size_t msri_masses_that_differ(const msr_view *s) {
+  return s->m_stride ? s->n : s->n > 0;
+}
+
 /* The least multiple of `unit` that isn't below n. */
 static inline size_t msri_round_up(size_t n, size_t unit) { return (n + unit - 1) / unit * unit; }
 

@@ -1,10 +1,10 @@
-/* pixel.h - what the colour of a pixel means. */
+/* pixel.h - what the colour of a pixel means, and the stretches of a row that mean the same. */
 #ifndef MSRI_PIXEL_H
 #define MSRI_PIXEL_H
 
 #include "base/base.h"
 
-typedef enum msri_pixel { MSRI_AIR, MSRI_SUPPORT, MSRI_MASS, MSRI_UNCLEAR } msri_pixel;
+typedef enum msri_pixel { MSRI_AIR, MSRI_SUPPORT, MSRI_MASS, MSRI_UNCLEAR, MSRI_PIXELS } msri_pixel;
 
 /* White is air, black a support, a colour whose channels differ by a quarter of the range a mass.
  */
@@ -25,5 +25,18 @@ static inline const unsigned char *msri_pixel_rgb(const msr_picture *picture, si
 static inline msri_pixel msri_pixel_at(const msr_picture *picture, size_t column, size_t row) {
   return msri_pixel_of(msri_pixel_rgb(picture, column, row));
 }
+
+/* Neighbours in a row, from column `begin` to `end` - 1. */
+typedef struct msri_span {
+  size_t begin, end;
+} msri_span;
+
+/* The next pixels of the row, from s->end on, that are all of one kind, which goes to `kind`. False
+ * at the end of the row. A row of one colour takes an eighth of a step a byte. */
+bool msri_span_next(const msr_picture *picture, size_t row, msri_span *s, msri_pixel *kind);
+
+/* The same of the kind `wanted`: for (msri_span s = {0, 0}; msri_span_of(..., &s);) visits
+ * them all. */
+bool msri_span_of(const msr_picture *picture, size_t row, msri_pixel wanted, msri_span *s);
 
 #endif

@@ -47,11 +47,11 @@ bool msri_supports_face(const msri_supports *s, const double *from, const double
 
 static void mark(msri_supports *s, const msr_picture *picture) {
   for (size_t row = 0; row < s->height; row++)
-    for (size_t column = 0; column < s->width; column++) {
-      if (msri_pixel_at(picture, column, row) != MSRI_SUPPORT) continue;
-      const size_t bit = (s->height - 1 - row) * s->width + column;
-      s->solid[bit / MSRI_WORD] |= (uint64_t)1 << (bit % MSRI_WORD);
-    }
+    for (msri_span black = {0, 0}; msri_span_of(picture, row, MSRI_SUPPORT, &black);)
+      for (size_t column = black.begin; column < black.end; column++) {
+        const size_t bit = (s->height - 1 - row) * s->width + column;
+        s->solid[bit / MSRI_WORD] |= (uint64_t)1 << (bit % MSRI_WORD);
+      }
 }
 
 /* msri_contact's stop. */

@@ -26,6 +26,7 @@ double msri_air_relax(const msri_air *air, const msr_view *s, double h, double *
 
 double msri_air_rate(double c, const msr_view *s) {
   double most = 0;
-  for (size_t i = 0; i < s->n; i++) most = msri_max(most, c / msr_view_mass(s, i));
+  for (size_t i = 0; i < msri_masses_that_differ(s); i++)
+    most = msri_max(most, c / msr_view_mass(s, i));
   return most;
 }

@@ -121,6 +121,7 @@ const msr_force msr_force_damping = {
     .summary = "F = z (v_ij . n) n along each spring",
     .dissipative = true,
     .uses_velocity = true,
+    .ignores_start = true,
     .params_size = sizeof(msr_damping),
     .check = check,
     .idle = idle,

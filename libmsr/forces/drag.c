@@ -57,6 +57,7 @@ const msr_force msr_force_drag = {
     .summary = "F = -c v",
     .dissipative = true,
     .uses_velocity = true,
+    .ignores_start = true,
     .params_size = sizeof(msr_drag),
     .check = check,
     .idle = idle,

@@ -55,6 +55,7 @@ const msr_force msr_force_gravity = {
     .summary = "F = -m g along y",
     .absent = "GRAVITE is 0",
     .conservative = true,
+    .ignores_start = true,
     .params_size = sizeof(msr_gravity),
     .check = check,
     .idle = idle,

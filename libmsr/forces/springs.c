@@ -177,6 +177,7 @@ const msr_force msr_force_springs = {
     .summary = "F = k (|x_ij| - L) x_ij / |x_ij|",
     .absent = "no two masses are neighbours",
     .conservative = true,
+    .ignores_start = true,
     .idle = idle,
     .describe = describe,
     .add = add,

@@ -115,6 +115,7 @@ const msr_force msr_force_wind = {
     .summary = "F = c (w(t) - v), w random (Ornstein-Uhlenbeck)",
     .uses_velocity = true,
     .uses_time = true,
+    .ignores_start = true,
     .params_size = sizeof(msr_wind),
     .scratch_size = sizeof(msri_noise_cache),
     .check = check,

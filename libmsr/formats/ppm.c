@@ -146,15 +146,24 @@ static msr_status bad_sample(const reader *r, size_t start, size_t i) {
                           quote(s, start, word), column, row, r->header[MAXVAL]);
 }
 
+/* Where the next sample begins: mostly after a single white space. */
+static inline size_t next_sample(const msri_source *s, size_t at) {
+  const bool usual = at + 1 < s->size && is_space(s->bytes[at]) && s->bytes[at + 1] >= '0' &&
+                     s->bytes[at + 1] <= '9';
+  return usual ? at + 1 : skip(s, at, true);
+}
+
 static msr_status read_plain(reader *r, unsigned char *rgb) {
-  const msri_source *s = &r->source;
+  const msri_source s = r->source;
   const size_t maxval = r->header[MAXVAL];
+  size_t at = r->at;
   for (size_t i = 0; i < r->samples; i++) {
     size_t sample;
-    const size_t start = r->at = skip(s, r->at, true);
-    if (!read_number(s, &r->at, maxval, &sample)) return bad_sample(r, start, i);
+    const size_t start = at = next_sample(&s, at);
+    if (!read_number(&s, &at, maxval, &sample)) return bad_sample(r, start, i);
     rgb[i] = maxval == 255 ? (unsigned char)sample : scale(sample, maxval);
   }
+  r->at = at;
   return MSR_OK;
 }
 

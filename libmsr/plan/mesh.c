@@ -1,179 +1,207 @@
 /* mesh.c - the springs of a scene as runs of constant offset.
  *
  * In reading order the right neighbour of mass i is i + 1 and, along a stretch of a row, the lower
- * one is i + d with d constant: a picture's springs need no memory of their own, only runs. Springs
- * added by a program are sorted so that a lattice built by hand makes long runs too, BAND masses at
- * a time to stay in cache. The order of runs is the order of summation. */
-#include "plan/plan.h"
-
-#include "base/pixel.h"
+ * one is i + d with d constant: a picture's springs need no memory of their own, only runs, one for
+ * every stretch of masses that lies beside another. The order of runs is the order of summation. */
+#include "plan/mesh.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
-
-enum { BAND = 1024 };
-static const size_t NONE = SIZE_MAX;
 
 /* ---- Runs */
 
-/* Appends the spring i -- j, to the last run if it goes on there. k and L are one value for every
- * spring (stride 0) or this spring's place in an array (stride 1). */
-static msr_status append(msri_mesh *mesh, size_t i, size_t j, const double *k, const double *L,
-                         size_t stride, msr_error *err) {
-  const size_t offset = j - i;
-  mesh->springs.n++;
-  if (mesh->springs.n_runs > 0) {
-    msr_run_of_springs *run = &mesh->run[mesh->springs.n_runs - 1];
-    const size_t s = run->count * stride;
-    if (run->first + run->count == i && run->offset == offset && run->stride == stride &&
-        run->k + s == k && run->L + s == L) {
-      run->count++;
-      return MSR_OK;
-    }
+static bool goes_on(const msr_run_of_springs *run, const msr_run_of_springs *next) {
+  return run->first + run->count == next->first && run->offset == next->offset &&
+         run->stride == 0 && next->stride == 0 && run->k == next->k && run->L == next->L;
+}
+
+msr_status msri_mesh_add_run(msri_mesh *mesh, msr_run_of_springs run, msr_error *err) {
+  msr_springs *springs = &mesh->springs;
+  msr_run_of_springs *last = springs->n_runs > 0 ? &mesh->run[springs->n_runs - 1] : NULL;
+  springs->n += run.count;
+  if (last && goes_on(last, &run)) {
+    last->count += run.count;
+    return MSR_OK;
   }
-  msr_run_of_springs *grown = msri_grow(mesh->run, &mesh->run_capacity, mesh->springs.n_runs + 1,
-                                        sizeof *grown, "springs", err);
+  msr_run_of_springs *grown =
+      msri_grow(mesh->run, &mesh->run_capacity, springs->n_runs + 1, sizeof *grown, "springs", err);
   if (!grown) return MSR_ENOMEM;
   mesh->run = grown;
-  grown[mesh->springs.n_runs++] = (msr_run_of_springs){i, 1, offset, k, L, stride};
+  grown[springs->n_runs++] = run;
   return MSR_OK;
 }
 
-static msr_status append_anchor(msri_mesh *mesh, msr_anchor anchor, msr_error *err) {
+static msr_status add_anchor(msri_mesh *mesh, const msr_anchor *anchor, msr_error *err) {
   msr_anchor *grown = msri_grow(mesh->anchor, &mesh->anchor_capacity, mesh->springs.n_anchors + 1,
                                 sizeof *grown, "anchors", err);
   if (!grown) return MSR_ENOMEM;
   mesh->anchor = grown;
-  grown[mesh->springs.n_anchors++] = anchor;
+  grown[mesh->springs.n_anchors++] = *anchor;
   return MSR_OK;
 }
 
 /* ---- The picture's springs */
 
-/* Numbers the masses of a row from `next` on; NONE elsewhere. Returns the next number. */
-static size_t number_row(const msr_picture *picture, size_t row, size_t next, size_t *number) {
-  for (size_t c = 0; c < picture->width; c++)
-    number[c] = msri_pixel_at(picture, c, row) == MSRI_MASS ? next++ : NONE;
-  return next;
+/* Masses beside each other in a row. */
+typedef struct block {
+  size_t begin, end; /* columns */
+  size_t first;      /* number of the one at `begin` */
+} block;
+
+typedef struct row {
+  size_t n;
+  block *block; /* [(width + 1) / 2] */
+} row;
+
+static void read_row(const msri_grid *grid, size_t at, row *r) {
+  size_t first = grid->before[at];
+  r->n = 0;
+  for (msri_span s = {0, 0}; msri_span_of(grid->picture, at, MSRI_MASS, &s);) {
+    r->block[r->n++] = (block){s.begin, s.end, first};
+    first += s.end - s.begin;
+  }
 }
 
-/* Springs from each mass of a row to the one `right` columns further in the row `to`. */
-static msr_status tie_rows(msri_mesh *mesh, size_t width, const size_t *from, const size_t *to,
-                           int right, size_t side, msr_error *err) {
-  const size_t begin = (size_t)(right < 0), end = width - (size_t)(right > 0);
+/* Springs from the masses of a block to those of another, `right` - 1 columns further. */
+static msr_status tie_blocks(msri_mesh *mesh, const block *from, const block *to, size_t right,
+                             msr_error *err) {
+  const double *L = &mesh->lattice_L[right != 1];
+  const size_t above = from->begin + right, below = to->begin + 1;
+  const size_t begin = above > below ? above : below;
+  const size_t end = from->end + right < to->end + 1 ? from->end + right : to->end + 1;
+  if (begin >= end) return MSR_OK;
+  const size_t i = from->first + (begin - above), j = to->first + (begin - below);
+  const msr_run_of_springs run = {i, end - begin, j - i, &mesh->lattice_k, L, 0};
+  return msri_mesh_add_run(mesh, run, err);
+}
+
+/* Springs from each mass of a row to the one `right` - 1 columns further in the next row. */
+static msr_status tie_rows(msri_mesh *mesh, const row *from, const row *to, size_t right,
+                           msr_error *err) {
   msr_status status = MSR_OK;
-  for (size_t c = begin; c < end && status == MSR_OK; c++) {
-    const size_t i = from[c], j = to[c + (size_t)right];
-    if (i != NONE && j != NONE)
-      status = append(mesh, i, j, &mesh->lattice_k, &mesh->lattice_L[side], 0, err);
+  for (size_t f = 0, t = 0; f < from->n && t < to->n && status == MSR_OK;) {
+    const bool ends_first = from->block[f].end + right < to->block[t].end + 1;
+    status = tie_blocks(mesh, &from->block[f], &to->block[t], right, err);
+    *(ends_first ? &f : &t) += 1;
   }
   return status;
 }
 
-/* Anchors from each mass of a row to the supports around it. */
-static msr_status attach_row(msri_mesh *mesh, const msr_scene *scene, size_t row,
-                             const size_t *number, msr_error *err) {
+/* Springs from each mass of a row to its right neighbour. */
+static msr_status tie_along(msri_mesh *mesh, const row *r, msr_error *err) {
+  msr_status status = MSR_OK;
+  for (size_t n = 0; n < r->n && status == MSR_OK; n++) {
+    const block *b = &r->block[n];
+    const size_t springs = b->end - b->begin - 1;
+    const msr_run_of_springs run = {b->first, springs, 1, &mesh->lattice_k, mesh->lattice_L, 0};
+    if (springs > 0) status = msri_mesh_add_run(mesh, run, err);
+  }
+  return status;
+}
+
+/* All springs between a row and the next one, `below`, then those along the latter. */
+static msr_status tie_row(msri_mesh *mesh, bool diagonals, const row *above, const row *below,
+                          msr_error *err) {
+  msr_status status = tie_rows(mesh, above, below, 1, err);
+  if (status == MSR_OK && diagonals) status = tie_rows(mesh, above, below, 0, err);
+  if (status == MSR_OK && diagonals) status = tie_rows(mesh, above, below, 2, err);
+  if (status == MSR_OK) status = tie_along(mesh, below, err);
+  return status;
+}
+
+/* Anchors from a mass to the supports around its pixel. */
+static msr_status attach_mass(msri_mesh *mesh, const msr_scene *scene, size_t mass, size_t column,
+                              size_t at, msr_error *err) {
   static const int around[8][2] = {{1, 0}, {-1, 0}, {0, 1},  {0, -1},
                                    {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
   const msr_picture *p = scene->picture;
   msr_status status = MSR_OK;
-  for (size_t c = 0; c < p->width; c++) {
-    for (int n = 0; n < scene->options.neighbours && number[c] != NONE; n++) {
-      const size_t nc = c + (size_t)around[n][0], nr = row + (size_t)around[n][1];
-      if (nc >= p->width || nr >= p->height || msri_pixel_at(p, nc, nr) != MSRI_SUPPORT) continue;
-      const double x = (double)nc + 0.5, y = (double)(p->height - nr) - 0.5;
-      const msr_anchor anchor = {number[c], x, y, mesh->lattice_k, mesh->lattice_L[n >= 4]};
-      status = append_anchor(mesh, anchor, err);
-      if (status != MSR_OK) return status;
-    }
+  for (int n = 0; n < scene->options.neighbours && status == MSR_OK; n++) {
+    const size_t nc = column + (size_t)around[n][0], nr = at + (size_t)around[n][1];
+    if (nc >= p->width || nr >= p->height || msri_pixel_at(p, nc, nr) != MSRI_SUPPORT) continue;
+    const double x = (double)nc + 0.5, y = (double)(p->height - nr) - 0.5;
+    const msr_anchor anchor = {mass, x, y, mesh->lattice_k, mesh->lattice_L[n >= 4]};
+    status = add_anchor(mesh, &anchor, err);
   }
   return status;
 }
 
-/* All springs between row `above` and the next one, `below`, then those along the latter. */
-static msr_status tie_row(msri_mesh *mesh, const msr_scene *scene, const size_t *above,
-                          const size_t *below, msr_error *err) {
-  const size_t width = scene->picture->width;
-  const bool diagonals = scene->options.neighbours == 8;
-  msr_status status = tie_rows(mesh, width, above, below, 0, 0, err);
-  if (status == MSR_OK && diagonals) status = tie_rows(mesh, width, above, below, -1, 1, err);
-  if (status == MSR_OK && diagonals) status = tie_rows(mesh, width, above, below, 1, 1, err);
-  if (status == MSR_OK) status = tie_rows(mesh, width, below, below, 1, 0, err);
+/* Is there a support in the row, or in one beside it? */
+static bool near_supports(const msr_picture *picture, size_t at) {
+  for (size_t r = at > 0 ? at - 1 : 0; r < picture->height && r <= at + 1; r++)
+    if (msri_span_of(picture, r, MSRI_SUPPORT, &(msri_span){0, 0})) return true;
+  return false;
+}
+
+static msr_status attach_row(msri_mesh *mesh, const msr_scene *scene, size_t at, const row *r,
+                             msr_error *err) {
+  msr_status status = MSR_OK;
+  if (!scene->options.attach || !near_supports(scene->picture, at)) return MSR_OK;
+  for (const block *b = r->block; b < r->block + r->n; b++)
+    for (size_t c = b->begin; c < b->end && status == MSR_OK; c++)
+      status = attach_mass(mesh, scene, b->first + (c - b->begin), c, at, err);
   return status;
 }
 
 static msr_status tie_picture(msri_mesh *mesh, const msr_scene *scene, msr_error *err) {
-  const msr_picture *p = scene->picture;
-  size_t *numbers = msri_alloc(2 * p->width, sizeof *numbers, "the springs", err);
-  if (!numbers) return MSR_ENOMEM;
-  size_t *above = numbers, *below = numbers + p->width, next = 0;
-  for (size_t c = 0; c < p->width; c++) above[c] = NONE;
+  const size_t most = (scene->picture->width + 1) / 2;
+  block *blocks = msri_alloc(2 * most, sizeof *blocks, "the springs", err);
+  if (!blocks) return MSR_ENOMEM;
+  row rows[2] = {{0, blocks}, {0, blocks + most}};
   msr_status status = MSR_OK;
-  for (size_t row = 0; row < p->height && status == MSR_OK; row++) {
-    next = number_row(p, row, next, below);
-    status = tie_row(mesh, scene, above, below, err);
-    if (status == MSR_OK && scene->options.attach)
-      status = attach_row(mesh, scene, row, below, err);
-    size_t *swap = above;
-    above = below;
-    below = swap;
+  for (size_t at = 0; at < scene->picture->height && status == MSR_OK; at++) {
+    const row *above = &rows[(at + 1) % 2];
+    row *below = &rows[at % 2];
+    read_row(scene->grid, at, below);
+    status = tie_row(mesh, scene->options.neighbours == 8, above, below, err);
+    if (status == MSR_OK) status = attach_row(mesh, scene, at, below, err);
   }
-  free(numbers);
+  free(blocks);
   return status;
 }
 
-/* ---- The program's springs */
+/* ---- All of them */
 
-#define COMPARE(a, b)                                                                              \
-  if ((a) != (b)) return (a) < (b) ? -1 : 1
-
-static int by_band_offset_and_first(const void *a, const void *b) {
-  const msri_scene_spring *p = a, *q = b;
-  COMPARE(p->i / BAND, q->i / BAND);
-  COMPARE(p->j - p->i, q->j - q->i);
-  COMPARE(p->i, q->i);
-  COMPARE(p->k, q->k);
-  COMPARE(p->L, q->L);
-  return 0;
+/* Gives back what memory of n elements holds beyond them. NULL: it couldn't. */
+static void *trim(void *old, size_t *capacity, size_t n, size_t size, msr_error *err) {
+  if (n == *capacity || n == 0) return old;
+  void *trimmed = realloc(old, n * size);
+  if (trimmed)
+    *capacity = n;
+  else
+    msri_fail(err, MSR_ENOMEM, "out of memory for springs (%zu x %zu bytes)", n, size);
+  return trimmed;
 }
 
-static msr_status tie_added(msri_mesh *mesh, const msr_scene *scene, msr_error *err) {
-  const size_t n = scene->n_springs;
-  mesh->n_added = n;
-  msri_scene_spring *sorted = msri_alloc(n, sizeof *sorted, "the springs", err);
-  mesh->k = msri_alloc(n, sizeof *mesh->k, "the springs", err);
-  mesh->L = msri_alloc(n, sizeof *mesh->L, "the springs", err);
-  msr_status status = sorted && mesh->k && mesh->L ? MSR_OK : MSR_ENOMEM;
-  if (status == MSR_OK && n > 0) {
-    memcpy(sorted, scene->spring, n * sizeof *sorted);
-    qsort(sorted, n, sizeof *sorted, by_band_offset_and_first);
-  }
-  for (size_t s = 0; s < n && status == MSR_OK; s++) {
-    mesh->k[s] = sorted[s].k;
-    mesh->L[s] = sorted[s].L;
-    status = append(mesh, sorted[s].i, sorted[s].j, &mesh->k[s], &mesh->L[s], 1, err);
-  }
-  free(sorted);
-  for (size_t a = 0; a < scene->n_anchors && status == MSR_OK; a++)
-    status = append_anchor(mesh, scene->anchor[a], err);
-  return status;
+/* The runs and anchors of a mesh that is whole. */
+static msr_status settle(msri_mesh *mesh, msr_error *err) {
+  msr_springs *s = &mesh->springs;
+  msr_run_of_springs *run = trim(mesh->run, &mesh->run_capacity, s->n_runs, sizeof *run, err);
+  if (s->n_runs > 0 && !run) return MSR_ENOMEM;
+  s->run = mesh->run = run;
+  s->anchor = mesh->anchor;
+  return MSR_OK;
 }
 
 msr_status msri_mesh_create(const msr_scene *scene, msri_mesh *mesh, msr_error *err) {
   *mesh = (msri_mesh){.lattice_k = scene->conf.stiffness, .lattice_L = {1, sqrt(2)}};
   msr_status status = scene->picture ? tie_picture(mesh, scene, err) : MSR_OK;
-  if (status == MSR_OK) status = tie_added(mesh, scene, err);
+  if (status == MSR_OK) status = msri_mesh_tie_added(mesh, scene, err);
+  for (size_t a = 0; a < scene->n_anchors && status == MSR_OK; a++)
+    status = add_anchor(mesh, &scene->anchor[a], err);
+  if (status == MSR_OK) status = settle(mesh, err);
   if (status != MSR_OK) msri_mesh_clear(mesh);
-  mesh->springs.run = mesh->run;
-  mesh->springs.anchor = mesh->anchor;
   return status;
 }
 
 void msri_mesh_clear(msri_mesh *mesh) {
   free(mesh->run);
   free(mesh->anchor);
-  free(mesh->k);
-  free(mesh->L);
+  free(mesh->values);
   *mesh = (msri_mesh){0};
+}
+
+size_t msri_mesh_bytes(const msri_mesh *mesh) {
+  return mesh->run_capacity * sizeof *mesh->run + mesh->anchor_capacity * sizeof *mesh->anchor +
+         2 * mesh->n_values * sizeof *mesh->values;
 }

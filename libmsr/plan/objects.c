@@ -1,5 +1,5 @@
-/* objects.c - connected components of a picture's masses, by its spans: masses side by side in
- * a row without a gap. Spans that touch those of the row above are united with them (Rosenfeld
+/* objects.c - connected components of a picture's masses, by its pieces: masses side by side in
+ * a row without a gap. Pieces that touch those of the row above are united with them (Rosenfeld
  * & Pfaltz 1966, J. ACM 13, 471), in trees that are flattened as they are climbed (Tarjan 1975,
  * J. ACM 22, 215). */
 #include "plan/objects.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A span as it is found, in reading order. */
+/* A piece as it is found, in reading order. */
 typedef struct found {
   size_t first;
   uint32_t row, column, count;
@@ -33,20 +33,16 @@ static void unite(found *at, uint32_t a, uint32_t b) {
   if (q < p) at[p].parent = q;
 }
 
-/* ---- Spans */
+/* ---- Pieces */
 
 static msr_status find_in_row(finds *f, const msr_picture *picture, size_t row) {
-  const size_t width = picture->width;
-  for (size_t c = 0; c < width; c++) {
-    if (msri_pixel_at(picture, c, row) != MSRI_MASS) continue;
-    const size_t begin = c;
-    while (c < width && msri_pixel_at(picture, c, row) == MSRI_MASS) c++;
+  for (msri_span s = {0, 0}; msri_span_of(picture, row, MSRI_MASS, &s);) {
+    const uint32_t self = (uint32_t)f->n, count = (uint32_t)(s.end - s.begin);
     found *grown = msri_grow(f->at, &f->capacity, f->n + 1, sizeof *grown, "the objects", f->err);
     if (!grown) return MSR_ENOMEM;
     f->at = grown;
-    const uint32_t self = (uint32_t)f->n++;
-    grown[self] = (found){f->masses, (uint32_t)row, (uint32_t)begin, (uint32_t)(c - begin), self};
-    f->masses += c - begin;
+    grown[f->n++] = (found){f->masses, (uint32_t)row, (uint32_t)s.begin, count, self};
+    f->masses += count;
   }
   return MSR_OK;
 }
@@ -76,18 +72,18 @@ static msr_status find(finds *f, const msr_picture *picture, int neighbours) {
 
 /* ---- Objects */
 
-/* What an object covers, and where its spans go next. */
+/* What an object covers, and where its pieces go next. */
 typedef struct extent {
   uint32_t top, bottom, left, right; /* inclusive; right is past its last column */
-  size_t spans, next, masses, number;
+  size_t pieces, next, masses, number;
 } extent;
 
 static void extend(extent *e, const found *s) {
-  if (e->spans == 0) *e = (extent){.top = s->row, .left = s->column};
+  if (e->pieces == 0) *e = (extent){.top = s->row, .left = s->column};
   e->bottom = s->row;
   if (s->column < e->left) e->left = s->column;
   if (s->column + s->count > e->right) e->right = s->column + s->count;
-  e->spans++;
+  e->pieces++;
   e->masses += s->count;
 }
 
@@ -109,11 +105,11 @@ static void number(const finds *f, extent *of, msri_objects *o) {
     const size_t rows = of[s].bottom - of[s].top + 1;
     o->object[o->n++] = (msri_object){o->n_rows, rows, of[s].right - of[s].left, of[s].masses};
     o->n_rows += rows;
-    next += of[s].spans;
+    next += of[s].pieces;
   }
 }
 
-/* Spans by object, and the first of each row: an object has one in each of its rows. */
+/* Pieces by object, and the first of each row: an object has one in each of its rows. */
 static void arrange(const finds *f, extent *of, msri_objects *o) {
   for (size_t s = 0; s < f->n; s++) {
     const found *from = &f->at[s];
@@ -121,7 +117,7 @@ static void arrange(const finds *f, extent *of, msri_objects *o) {
     const size_t row = o->object[e->number].row + (from->row - e->top);
     const bool first = s == from->parent || o->row[row] == SIZE_MAX;
     if (first) o->row[row] = e->next;
-    o->span[e->next++] = (msri_span){from->first, from->column - e->left, from->count};
+    o->piece[e->next++] = (msri_piece){from->first, from->column - e->left, from->count};
   }
   o->row[o->n_rows] = f->n;
 }
@@ -144,8 +140,8 @@ static msr_status build(finds *f, msri_objects *o, msr_error *err) {
   const size_t rows = count_rows(f, of, &objects);
   o->object = msri_alloc(objects, sizeof *o->object, "the objects", err);
   o->row = msri_alloc(rows + 1, sizeof *o->row, "the objects", err);
-  o->span = msri_alloc(f->n, sizeof *o->span, "the objects", err);
-  const bool room = o->object && o->row && o->span;
+  o->piece = msri_alloc(f->n, sizeof *o->piece, "the objects", err);
+  const bool room = o->object && o->row && o->piece;
   if (room) {
     memset(o->row, 0xff, (rows + 1) * sizeof *o->row);
     number(f, of, o);
@@ -169,12 +165,12 @@ msr_status msri_objects_create(const msr_picture *picture, int neighbours, msri_
 void msri_objects_clear(msri_objects *objects) {
   free(objects->object);
   free(objects->row);
-  free(objects->span);
+  free(objects->piece);
   *objects = (msri_objects){0};
 }
 
 size_t msri_objects_bytes(const msri_objects *o) {
   if (!o->row) return 0;
   return o->n * sizeof *o->object + (o->n_rows + 1) * sizeof *o->row +
-         o->row[o->n_rows] * sizeof *o->span;
+         o->row[o->n_rows] * sizeof *o->piece;
 }

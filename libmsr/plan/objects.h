@@ -5,10 +5,10 @@
 #include "base/base.h"
 
 /* Masses first .. first+count-1, side by side in a row from a column of the object on. */
-typedef struct msri_span {
+typedef struct msri_piece {
   size_t first;
   uint32_t column, count;
-} msri_span;
+} msri_piece;
 
 /* Rows row .. row+rows-1 of msri_objects.row. */
 typedef struct msri_object {
@@ -18,9 +18,9 @@ typedef struct msri_object {
 } msri_object;
 
 typedef struct msri_objects {
-  msri_object *object;   /* [n] in the order of their first masses */
-  size_t *row;           /* [n_rows + 1]: the first span of each row, from the top */
-  msri_span *span; /* [row[n_rows]] from the left */
+  msri_object *object; /* [n] in the order of their first masses */
+  size_t *row;         /* [n_rows + 1]: the first piece of each row, from the top */
+  msri_piece *piece;   /* [row[n_rows]] from the left */
   size_t n, n_rows;
 } msri_objects;
 

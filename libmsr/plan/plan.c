@@ -1,7 +1,6 @@
 /* plan.c - compiles a scene: masses, springs, what it calls for (see effects.c), the step. */
 #include "plan/plan.h"
 
-#include "formats/ppm.h"
 #include "integrators/tolerance.h"
 #include "plan/state.h"
 #include "sweep/sweep.h"
@@ -11,10 +10,12 @@
 
 /* ---- Masses */
 
-static msr_status copy_picture(msr_plan *plan, const msr_picture *picture, msr_error *err) {
-  plan->figures.width = picture->width;
-  plan->figures.height = picture->height;
-  return msri_picture_copy(picture, &plan->picture, err);
+static void share_picture(msr_plan *plan, const msr_scene *scene) {
+  if (!scene->grid) return;
+  plan->grid = msri_grid_share(scene->grid);
+  plan->picture = plan->grid->picture;
+  plan->figures.width = plan->picture->width;
+  plan->figures.height = plan->picture->height;
 }
 
 /* Are all masses equal? Then the plan keeps one number for them all. */
@@ -29,9 +30,8 @@ static msr_status copy_masses(msr_plan *plan, const msr_scene *scene, msr_error 
   const size_t n = msr_scene_masses(scene);
   plan->figures.masses = n;
   plan->n_picture = scene->n_picture;
-  plan->mass = msri_alloc(scene->n_masses, sizeof *plan->mass, "the masses", err);
-  if (!plan->mass) return MSR_ENOMEM;
-  if (scene->n_masses > 0) memcpy(plan->mass, scene->mass, scene->n_masses * sizeof *plan->mass);
+  const msr_status status = msri_plan_keep_start(plan, scene, err);
+  if (status != MSR_OK) return status;
   if (uniform(scene, &plan->uniform_mass)) return MSR_OK;
   plan->m = msri_alloc(n, sizeof *plan->m, "the masses", err);
   if (!plan->m) return MSR_ENOMEM;
@@ -46,22 +46,41 @@ static void count_memory(msr_plan *plan) {
   const msri_mesh *mesh = &plan->mesh;
   msr_plan_figures *f = &plan->figures;
   const size_t added = f->masses - plan->n_picture;
-  f->plan_bytes =
-      sizeof *plan + 3 * f->width * f->height + added * sizeof *plan->mass +
-      (plan->m ? f->masses * sizeof *plan->m : 0) + mesh->run_capacity * sizeof *mesh->run +
-      mesh->n_added * (sizeof *mesh->k + sizeof *mesh->L) +
-      mesh->anchor_capacity * sizeof *mesh->anchor + (plan->graph ? plan->graph->bytes : 0) +
-      (plan->contact.drift ? f->width * f->height / 8 : 0) +
-      (plan->discs ? msri_discs_bytes(plan->discs) : 0) + msri_objects_bytes(&plan->objects);
+  f->plan_bytes = sizeof *plan + msri_grid_bytes(plan->grid) +
+                  added * ((plan->added_move ? 4 : 2) * sizeof *plan->added + 3) +
+                  (plan->m ? f->masses * sizeof *plan->m : 0) + msri_mesh_bytes(mesh) +
+                  (plan->graph ? plan->graph->bytes : 0) +
+                  (plan->contact.drift ? f->width * f->height / 8 : 0) +
+                  (plan->discs ? msri_discs_bytes(plan->discs) : 0) +
+                  msri_objects_bytes(&plan->objects);
   f->state_bytes = msri_state_bytes(plan);
+}
+
+/* What the scene calls for, and the steps. */
+static msr_status decide(msr_plan *plan, const msr_scene *scene, const msr_view *start,
+                         const msr_plan_options *options, msr_error *err) {
+  const bool automatic = !options->integrator && options->substeps == 0;
+  msr_status status = msri_plan_call_for_effects(plan, scene, start, err);
+  plan->cares = automatic && msri_plan_can_leap(plan);
+  if (plan->cares) plan->figures.care = &msr_integrator_energy_momentum;
+  plan->careful = plan->cares && msri_plan_crushes(plan, start);
+  if (status == MSR_OK) status = msri_plan_choose_step(plan, start, options->substeps, err);
+  if (status == MSR_OK && automatic) status = msri_plan_choose_leaps(plan, err);
+  return status;
+}
+
+/* Is it of interest where masses begin, and how fast? Those of a picture begin at rest, with
+ * springs as long as they will. */
+static bool looks_at_start(const msr_scene *scene) {
+  for (size_t i = 0; i < scene->n_forces; i++)
+    if (!scene->force[i].force->ignores_start) return true;
+  return scene->n_masses > 0 || scene->diameter > 0;
 }
 
 static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan_options *options,
                           msr_error *err) {
-  const uint64_t substeps = options->substeps;
-  const bool automatic = !options->integrator && substeps == 0;
-  msr_status status = scene->picture ? copy_picture(plan, scene->picture, err) : MSR_OK;
-  if (status == MSR_OK) status = copy_masses(plan, scene, err);
+  share_picture(plan, scene);
+  msr_status status = copy_masses(plan, scene, err);
   if (status == MSR_OK) status = msri_mesh_create(scene, &plan->mesh, err);
   if (status != MSR_OK) return status;
   if (plan->figures.integrator->implicit)
@@ -69,21 +88,16 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan
   if (status != MSR_OK) return status;
   plan->figures.springs = plan->mesh.springs.n;
   plan->figures.anchors = plan->mesh.springs.n_anchors;
-  const size_t n = plan->figures.masses;
-  double *q = msri_alloc(4 * n, sizeof *q, "the masses", err);
+  const size_t n = plan->figures.masses, places = looks_at_start(scene) ? n : 0;
+  double *q = msri_alloc(4 * places, sizeof *q, "the masses", err);
   if (!q) return MSR_ENOMEM;
-  double *v = q + 2 * n;
-  msri_plan_start(plan, q, q + n, v, v + n);
-  const msr_view start = msri_plan_view(plan, 0, q, v);
-  status = msri_plan_call_for_effects(plan, scene, &start, err);
-  plan->cares = automatic && msri_plan_can_leap(plan);
-  if (plan->cares) plan->figures.care = &msr_integrator_energy_momentum;
-  plan->careful = plan->cares && msri_plan_crushes(plan, &start);
-  if (status == MSR_OK) status = msri_plan_choose_step(plan, &start, substeps, err);
-  if (status == MSR_OK && automatic) status = msri_plan_choose_leaps(plan, err);
+  if (places > 0) msri_plan_start(plan, q, q + n, q + 2 * n, q + 3 * n);
+  const msr_view start =
+      places > 0 ? msri_plan_view(plan, 0, q, q + 2 * n) : msri_plan_view(plan, 0, NULL, NULL);
+  status = decide(plan, scene, &start, options, err);
   free(q);
   if (status == MSR_OK && msri_plan_sweeps(plan))
-    status = msri_objects_create(plan->picture, plan->neighbours, &plan->objects, err);
+    status = msri_objects_create(plan->grid->picture, plan->neighbours, &plan->objects, err);
   if (status == MSR_OK) count_memory(plan);
   return status;
 }
@@ -142,11 +156,12 @@ void msr_plan_free(msr_plan *plan) {
   msri_objects_clear(&plan->objects);
   msri_mesh_clear(&plan->mesh);
   msri_notes_clear(&plan->notes);
-  msr_picture_free(plan->picture);
+  msri_grid_free(plan->grid);
   free(plan->term);
   free(plan->effect);
   free(plan->reason);
-  free(plan->mass);
+  free(plan->added);
+  free(plan->added_rgb);
   free(plan->m);
   free(plan);
 }

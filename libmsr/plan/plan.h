@@ -6,6 +6,7 @@
 #include "base/notes.h"
 #include "contacts/contact.h"
 #include "contacts/discs.h"
+#include "plan/mesh.h"
 #include "plan/objects.h"
 #include "scene/scene.h"
 #include "solvers/graph.h"
@@ -25,18 +26,6 @@ typedef struct msri_term {
   size_t scratch;   /* offset into the state's scratch */
 } msri_term;
 
-/* The springs, with the memory that their runs point into. */
-typedef struct msri_mesh {
-  msr_springs springs;
-  msr_run_of_springs *run;
-  msr_anchor *anchor;
-  double *k, *L; /* [n_added]: springs that a program added */
-  size_t n_added;
-  double lattice_k;    /* of every spring of the picture */
-  double lattice_L[2]; /* along a side, along a diagonal */
-  size_t run_capacity, anchor_capacity;
-} msri_mesh;
-
 /* Long implicit steps in place of substeps, if figures.leaps; costs are in evaluations of the
  * acceleration. */
 typedef struct msri_leaping {
@@ -51,8 +40,11 @@ extern const double msri_leap_reach; /* how far what meets something may be from
 struct msr_plan {
   msr_plan_figures figures;
   size_t n_picture;
-  msr_picture *picture; /* NULL: none */
-  msr_mass *mass;       /* [figures.masses - n_picture]: those added by a program */
+  msri_grid *grid;            /* the scene's; NULL: no picture */
+  const msr_picture *picture; /* the grid's; NULL: none */
+  double *added;   /* [2][figures.masses - n_picture]: x, y of masses added by a program; */
+  bool added_move; /* then as many vx, vy */
+  unsigned char *added_rgb; /* [figures.masses - n_picture][3] */
   double uniform_mass;
   double *m; /* [figures.masses]; NULL: all are uniform_mass */
   msri_mesh mesh;
@@ -79,10 +71,6 @@ struct msr_plan {
   bool careful;      /* from the start */
   msri_notes notes;
 };
-
-/* The springs of a scene. On failure nothing is left. MSR_ENOMEM. */
-msr_status msri_mesh_create(const msr_scene *scene, msri_mesh *mesh, msr_error *err);
-void msri_mesh_clear(msri_mesh *mesh);
 
 /* Can the force bring in energy that no potential tells of? */
 static inline bool msri_force_drives(const msr_force *force) {
@@ -144,13 +132,19 @@ static inline double msri_plan_time(const msr_plan_figures *f, uint64_t iteratio
 msr_status msri_plan_call_for_effects(msr_plan *plan, const msr_scene *scene, const msr_view *start,
                                       msr_error *err);
 
-/* Start of every mass. x, y, vx, vy [masses]. */
+/* Keeps what a program's masses begin with. MSR_ENOMEM. */
+msr_status msri_plan_keep_start(msr_plan *plan, const msr_scene *scene, msr_error *err);
+
+/* Start of every mass. x, y, vx, vy [masses]; vx and vy are zeros before: of what begins at rest
+ * they are left alone. */
 void msri_plan_start(const msr_plan *plan, double *x, double *y, double *vx, double *vy);
 
 /* Colours of all masses, rgb [masses][3]. */
 void msri_plan_colours(const msr_plan *plan, unsigned char *rgb);
 
-/* A view of the plan's masses with the arrays q = x[n], y[n] and v = vx[n], vy[n] (may be NULL). */
+/* A view of the plan's masses with the arrays q = x[n], y[n] and v = vx[n], vy[n] (both may be
+ * NULL).
+ */
 msr_view msri_plan_view(const msr_plan *plan, double t, const double *q, const double *v);
 
 /* Kinetic energy. */

@@ -108,7 +108,7 @@ static msr_status explain(msr_plan *plan, bool automatic, msr_error *err) {
 
 /* Forces are multiplied by 1 / m. */
 static msr_status check_masses(const msr_view *s, msr_error *err) {
-  for (size_t i = 0; i < s->n; i++)
+  for (size_t i = 0; i < msri_masses_that_differ(s); i++)
     if (isinf(1 / msr_view_mass(s, i)))
       return msri_fail(err, MSR_EINPUT, "a mass of %g kg is too small to divide by; raise MASSE",
                        msr_view_mass(s, i));

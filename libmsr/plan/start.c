@@ -2,38 +2,67 @@
 #include "plan/plan.h"
 
 #include "base/number.h"
-#include "base/pixel.h"
 
 #include <math.h>
 #include <string.h>
 
-void msri_plan_start(const msr_plan *plan, double *x, double *y, double *vx, double *vy) {
-  const size_t width = plan->figures.width, height = plan->figures.height;
-  size_t i = 0;
-  for (size_t row = 0; row < height; row++)
-    for (size_t column = 0; column < width; column++) {
-      if (msri_pixel_at(plan->picture, column, row) != MSRI_MASS) continue;
-      x[i] = (double)column + 0.5;
-      y[i] = (double)(height - row) - 0.5;
-      vx[i] = vy[i] = 0;
-      i++;
-    }
-  for (const msr_mass *mass = plan->mass; i < plan->figures.masses; i++, mass++) {
-    x[i] = mass->x, y[i] = mass->y;
-    vx[i] = mass->vx, vy[i] = mass->vy;
+static bool move(const msr_scene *scene) {
+  for (size_t i = 0; i < scene->n_masses; i++)
+    if (scene->mass[i].vx != 0 || scene->mass[i].vy != 0) return true;
+  return false;
+}
+
+msr_status msri_plan_keep_start(msr_plan *plan, const msr_scene *scene, msr_error *err) {
+  const size_t n = scene->n_masses;
+  plan->added_move = move(scene);
+  plan->added = msri_alloc(plan->added_move ? 4 * n : 2 * n, sizeof *plan->added, "masses", err);
+  plan->added_rgb = msri_alloc(n, 3, "the masses", err);
+  if (!plan->added || !plan->added_rgb) return MSR_ENOMEM;
+  for (size_t i = 0; i < n; i++) {
+    const msr_mass *mass = &scene->mass[i];
+    const double start[] = {mass->x, mass->y, mass->vx, mass->vy};
+    for (size_t d = 0; d < (plan->added_move ? 4 : 2); d++) plan->added[d * n + i] = start[d];
+    memcpy(plan->added_rgb + 3 * i, mass->rgb, 3);
   }
+  return MSR_OK;
+}
+
+static void copy(size_t n, const double *from, double *to) { memcpy(to, from, n * sizeof *to); }
+
+/* From mass i on: those of a row of the picture. Returns the mass after them. */
+static size_t start_row(const msr_plan *plan, size_t row, size_t i, double *x, double *y) {
+  const double height = (double)(plan->figures.height - row) - 0.5;
+  for (msri_span s = {0, 0}; msri_span_of(plan->picture, row, MSRI_MASS, &s);)
+    for (size_t column = s.begin; column < s.end; column++, i++) {
+      x[i] = (double)column + 0.5;
+      y[i] = height;
+    }
+  return i;
+}
+
+void msri_plan_start(const msr_plan *plan, double *x, double *y, double *vx, double *vy) {
+  size_t i = 0;
+  for (size_t row = 0; row < plan->figures.height; row++) i = start_row(plan, row, i, x, y);
+  const size_t n = plan->figures.masses - i;
+  copy(n, plan->added, x + i);
+  copy(n, plan->added + n, y + i);
+  if (!plan->added_move) return;
+  copy(n, plan->added + 2 * n, vx + i);
+  copy(n, plan->added + 3 * n, vy + i);
+}
+
+static unsigned char *colour_row(const msr_plan *plan, size_t row, unsigned char *rgb) {
+  for (msri_span s = {0, 0}; msri_span_of(plan->picture, row, MSRI_MASS, &s);) {
+    const size_t size = 3 * (s.end - s.begin);
+    memcpy(rgb, msri_pixel_rgb(plan->picture, s.begin, row), size);
+    rgb += size;
+  }
+  return rgb;
 }
 
 void msri_plan_colours(const msr_plan *plan, unsigned char *rgb) {
-  const size_t pixels = plan->figures.width * plan->figures.height;
-  for (size_t p = 0; p < pixels; p++) {
-    const unsigned char *pixel = plan->picture->rgb + 3 * p;
-    if (msri_pixel_of(pixel) != MSRI_MASS) continue;
-    memcpy(rgb, pixel, 3);
-    rgb += 3;
-  }
-  for (size_t i = plan->n_picture; i < plan->figures.masses; i++, rgb += 3)
-    memcpy(rgb, plan->mass[i - plan->n_picture].rgb, 3);
+  for (size_t row = 0; row < plan->figures.height; row++) rgb = colour_row(plan, row, rgb);
+  memcpy(rgb, plan->added_rgb, 3 * (plan->figures.masses - plan->n_picture));
 }
 
 msr_view msri_plan_view(const msr_plan *plan, double t, const double *q, const double *v) {
@@ -42,7 +71,7 @@ msr_view msri_plan_view(const msr_plan *plan, double t, const double *q, const d
       .n = n,
       .t = t,
       .x = q,
-      .y = q + n,
+      .y = q ? q + n : NULL,
       .vx = v,
       .vy = v ? v + n : NULL,
       .m = plan->m ? plan->m : &plan->uniform_mass,
@@ -58,17 +87,10 @@ double msri_kinetic(const msr_view *s) {
   return sum / 2;
 }
 
-/* The pixel of the n-th mass of the picture. */
 bool msr_plan_pixel(const msr_plan *plan, size_t mass, size_t *column, size_t *row) {
   if (mass >= plan->n_picture) return false;
-  const size_t width = plan->figures.width;
-  for (size_t p = 0;; p++) {
-    if (msri_pixel_of(plan->picture->rgb + 3 * p) != MSRI_MASS) continue;
-    if (mass-- > 0) continue;
-    *column = p % width;
-    *row = p / width;
-    return true;
-  }
+  msri_grid_pixel(plan->grid, mass, column, row);
+  return true;
 }
 
 const char *msri_plan_mass_name(const msr_plan *plan, size_t mass, char *text, size_t size) {

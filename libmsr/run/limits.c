@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- Frequencies */
 
@@ -29,18 +30,21 @@ static bool pulls(const msr_plan *plan) {
   return false;
 }
 
-/* Is the object one full rectangle of 4 neighbours, and nothing else? Its sides go to side[2]. */
-static bool is_rectangle(const msr_plan *plan, const msr_view *s, double side[2]) {
-  if (s->n == 0 || s->n != plan->n_picture || plan->mesh.n_added > 0 || s->springs->n_anchors > 0)
-    return false;
-  double left = s->x[0], right = left, low = s->y[0], high = low;
-  for (size_t i = 0; i < s->n; i++) {
-    left = msri_min(left, s->x[i]), right = msri_max(right, s->x[i]);
-    low = msri_min(low, s->y[i]), high = msri_max(high, s->y[i]);
-  }
-  side[0] = right - left + 1, side[1] = high - low + 1;
-  return side[0] * side[1] == (double)s->n &&
-         (double)s->springs->n == 2 * (double)s->n - side[0] - side[1];
+/* Finds the sides of the object if it's one full rectangle of 4 neighbours, and nothing else. */
+static void measure(msri_start *s) {
+  const msr_springs *springs = &s->plan->mesh.springs;
+  size_t side[2];
+  if (s->plan->n_picture < s->plan->figures.masses || s->plan->mesh.n_added > 0) return;
+  if (springs->n_anchors > 0 || !s->plan->grid || !msri_grid_is_rectangle(s->plan->grid, side))
+    return;
+  if (springs->n == 2 * side[0] * side[1] - side[0] - side[1]) memcpy(s->side, side, sizeof side);
+}
+
+/* Is it of interest where masses begin? */
+static bool looks_at_places(const msri_start *s) {
+  for (size_t i = 0; i < s->plan->n_terms; i++)
+    if (!s->plan->term[i].force->ignores_start) return true;
+  return s->side[0] == 0 || msri_plan_damps(s->plan);
 }
 
 /* The highest mode of a chain of n masses with free ends, in units of k/m. */
@@ -50,18 +54,18 @@ static double chain(double n) {
 }
 
 /* At rest only chains along their direction swing; stretched, x and y alike along both. */
-static double rectangle_omega2(const msr_plan *plan, msri_stretch stretch, const double side[2]) {
-  const double a = chain(side[0]), b = chain(side[1]);
+static double rectangle_omega2(const msr_plan *plan, msri_stretch stretch, const size_t side[2]) {
+  const double a = chain((double)side[0]), b = chain((double)side[1]);
   return plan->mesh.lattice_k / plan->uniform_mass *
          (stretch == MSRI_AS_THEY_ARE ? msri_max(a, b) : a + b);
 }
 
 static msr_status frequency(const msri_start *s, msri_stretch stretch, msr_limit *limit) {
-  double omega2 = 0, bound = 0, side[2];
+  double omega2 = 0, bound = 0;
   msr_status status = MSR_OK;
   if (pulls(s->plan)) status = msr_force_springs.rates(NULL, &s->view, &bound, &(double){0});
-  if (status == MSR_OK && bound > 0 && is_rectangle(s->plan, &s->view, side)) {
-    omega2 = rectangle_omega2(s->plan, stretch, side);
+  if (status == MSR_OK && bound > 0 && s->side[0] > 0) {
+    omega2 = rectangle_omega2(s->plan, stretch, s->side);
     limit->found = MSR_FOUND_CLOSED_FORM;
   } else if (status == MSR_OK) {
     status = msri_tangent_largest(&s->view, stretch, bound, &omega2, &limit->iterations);
@@ -88,11 +92,14 @@ static void say_none_or_any(msr_limit *limit) {
 }
 
 msr_status msr_plan_stability(const msr_plan *plan, msr_stability *stability, msr_error *err) {
+  msri_start s = {.plan = plan};
+  measure(&s);
+  const bool places = looks_at_places(&s);
   const size_t n = plan->figures.masses;
-  double *q = msri_alloc(4 * n, sizeof *q, "the stable step", err);
+  double *q = msri_alloc(places ? 4 * n : 0, sizeof *q, "the stable step", err);
   if (!q) return MSR_ENOMEM;
-  msri_plan_start(plan, q, q + n, q + 2 * n, q + 3 * n);
-  msri_start s = {.plan = plan, .view = msri_plan_view(plan, 0, q, q + 2 * n)};
+  if (places) msri_plan_start(plan, q, q + n, q + 2 * n, q + 3 * n);
+  s.view = places ? msri_plan_view(plan, 0, q, q + 2 * n) : msri_plan_view(plan, 0, NULL, NULL);
   msr_stability found = {.bound = plan->figures.stable_step};
   msr_error said = {MSR_OK, ""};
   msr_status status = add_rates(&s);

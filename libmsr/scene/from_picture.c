@@ -1,31 +1,8 @@
 /* from_picture.c - a scene from a picture and a conf. */
 #include "scene/scene.h"
 
-#include "base/pixel.h"
 #include "formats/conf.h"
 #include "formats/ppm.h"
-
-/* Counts masses and supports; the first pixel that is neither, nor air, is an error. */
-static msr_status classify(msr_scene *scene, const char *name, const msr_picture *picture,
-                           msr_error *err) {
-  size_t unclear = 0, first = 0;
-  const size_t pixels = picture->width * picture->height;
-  for (size_t p = 0; p < pixels; p++) {
-    const msri_pixel kind = msri_pixel_of(picture->rgb + 3 * p);
-    scene->n_picture += kind == MSRI_MASS;
-    scene->n_supports += kind == MSRI_SUPPORT;
-    if (kind == MSRI_UNCLEAR && unclear++ == 0) first = p;
-  }
-  if (unclear == 0) return MSR_OK;
-  const size_t row = first / picture->width, column = first % picture->width;
-  const unsigned char *rgb = picture->rgb + 3 * first;
-  return msri_fail(err, MSR_EINPUT,
-                   "%s:%zu:%zu: pixel (%zu,%zu) is %d,%d,%d, neither white, black nor a clear "
-                   "colour (%zu such pixel%s in all); paint it white (255,255,255) for air, black "
-                   "(0,0,0) for a support, or a colour such as red for a mass",
-                   name, row + 1, column + 1, column, row, rgb[0], rgb[1], rgb[2], unclear,
-                   unclear == 1 ? "" : "s");
-}
 
 static msr_status check_options(const msr_scene_options *o, msr_error *err) {
   if (o->neighbours == 4 || o->neighbours == 8) return MSR_OK;
@@ -41,11 +18,14 @@ static msr_status fill(msr_scene *scene, const char *name, msr_picture *picture,
   scene->conf = *conf;
   msr_status status = check_options(&scene->options, err);
   if (status == MSR_OK) status = msri_conf_check("conf", conf, err);
-  if (status == MSR_OK) status = classify(scene, name, picture, err);
   if (status == MSR_OK && conf->gravity != 0)
     status = msr_scene_add_force(scene, &msr_force_gravity, &(msr_gravity){conf->gravity}, err);
-  if (status == MSR_OK) scene->picture = picture;
-  return status;
+  if (status == MSR_OK) status = msri_grid_create(name, picture, &scene->grid, err);
+  if (status != MSR_OK) return status;
+  scene->picture = picture;
+  scene->n_picture = scene->grid->masses;
+  scene->n_supports = scene->grid->supports;
+  return MSR_OK;
 }
 
 /* As msr_scene_from_picture, of which the scene takes the picture; on failure it is freed. */

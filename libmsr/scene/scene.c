@@ -1,7 +1,6 @@
 /* scene.c - what there is: an empty scene, and what a program sets in it, adds and asks. */
 #include "scene/scene.h"
 
-#include "base/pixel.h"
 #include "formats/conf.h"
 
 #include <math.h>
@@ -26,7 +25,7 @@ void msr_scene_free(msr_scene *scene) {
   free(scene->anchor);
   free(scene->spring);
   free(scene->mass);
-  msr_picture_free(scene->picture);
+  msri_grid_free(scene->grid);
   msri_notes_clear(&scene->notes);
   free(scene);
 }
@@ -182,9 +181,6 @@ msr_status msr_scene_mass_at(const msr_scene *scene, size_t column, size_t row, 
                      row, p ? p->width : 0, p ? p->height : 0);
   if (msri_pixel_at(p, column, row) != MSRI_MASS)
     return msri_fail(err, MSR_EUSAGE, "pixel (%zu,%zu) is no mass", column, row);
-  const size_t pixel = row * p->width + column;
-  size_t before = 0;
-  for (size_t i = 0; i < pixel; i++) before += msri_pixel_of(p->rgb + 3 * i) == MSRI_MASS;
-  *index = before;
+  *index = msri_grid_mass(scene->grid, column, row);
   return MSR_OK;
 }

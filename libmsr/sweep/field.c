@@ -18,7 +18,7 @@ msri_field msri_field_place(int ways, size_t stride, double *memory) {
 
 static void clear(double *to, size_t from, size_t n) { memset(to + from, 0, n * sizeof *to); }
 
-/* Most spans are short: calls would take longer than copies. */
+/* Most pieces are short: calls would take longer than copies. */
 MSRI_INLINE void copy(double *to, const double *from, size_t n) {
   for (; n >= 8; n -= 8, to += 8, from += 8) memcpy(to, from, 8 * sizeof *to);
   for (size_t few = 4; few > 0; few /= 2) {
@@ -33,24 +33,24 @@ void msri_field_fill(const msri_field *f, const msri_objects *objects, size_t ro
   clear(f->x, at, width), clear(f->y, at, width);
   clear(f->vx, at, width), clear(f->vy, at, width);
   for (size_t s = objects->row[row]; s < objects->row[row + 1]; s++) {
-    const msri_span *span = &objects->span[s];
-    const size_t begin = at + span->column, n = span->count;
-    copy(f->x + begin, from->x + span->first, n);
-    copy(f->y + begin, from->y + span->first, n);
-    copy(f->vx + begin, from->vx + span->first, n);
-    copy(f->vy + begin, from->vy + span->first, n);
+    const msri_piece *piece = &objects->piece[s];
+    const size_t begin = at + piece->column, n = piece->count;
+    copy(f->x + begin, from->x + piece->first, n);
+    copy(f->y + begin, from->y + piece->first, n);
+    copy(f->vx + begin, from->vx + piece->first, n);
+    copy(f->vy + begin, from->vy + piece->first, n);
   }
 }
 
 void msri_field_empty(const msri_field *f, const msri_objects *objects, size_t row,
                       const msri_swept *to, size_t at) {
   for (size_t s = objects->row[row]; s < objects->row[row + 1]; s++) {
-    const msri_span *span = &objects->span[s];
-    const size_t begin = at + span->column, n = span->count;
-    copy(to->x + span->first, f->x + begin, n);
-    copy(to->y + span->first, f->y + begin, n);
-    copy(to->vx + span->first, f->vx + begin, n);
-    copy(to->vy + span->first, f->vy + begin, n);
+    const msri_piece *piece = &objects->piece[s];
+    const size_t begin = at + piece->column, n = piece->count;
+    copy(to->x + piece->first, f->x + begin, n);
+    copy(to->y + piece->first, f->y + begin, n);
+    copy(to->vx + piece->first, f->vx + begin, n);
+    copy(to->vy + piece->first, f->vy + begin, n);
   }
 }
 
@@ -60,8 +60,8 @@ void msri_field_mark(double *marks, const msri_objects *objects, size_t row, dou
                      size_t width) {
   memset(marks - 1, 0, (width + 2) * sizeof *marks);
   for (size_t s = objects->row[row]; s < objects->row[row + 1]; s++) {
-    const msri_span *span = &objects->span[s];
-    for (size_t c = 0; c < span->count; c++) marks[span->column + c] = k;
+    const msri_piece *piece = &objects->piece[s];
+    for (size_t c = 0; c < piece->count; c++) marks[piece->column + c] = k;
   }
 }
 

@@ -13,10 +13,10 @@ enum { ROWS = MSRI_MOST_STAGES + 3 }; /* of the ring: those of the wave, and one
 static const size_t cache = 640 * 1024; /* bytes of a core's own, what else is needed left out */
 static const size_t none = SIZE_MAX;
 
-/* Neighbouring spans of a row with few cells between them: columns from .. to-1. */
+/* Neighbouring pieces of a row with few cells between them: columns from .. to-1. */
 typedef struct island {
   size_t from, to;
-  size_t next; /* span */
+  size_t next; /* piece */
 } island;
 
 enum { NEAR = 16 };
@@ -96,7 +96,7 @@ static msri_field row_in_place(const wave *w, size_t row) {
       [MSRI_BELOW] = TO_ALL, [MSRI_BELOW_LEFT] = TO_LEFT, [MSRI_BELOW_RIGHT] = TO_RIGHT};
   const msri_objects *o = &w->pass->plan->objects;
   const msri_swept *state = w->pass->state;
-  const size_t first = o->span[o->row[w->object->row + row]].first;
+  const size_t first = o->piece[o->row[w->object->row + row]].first;
   const bool last = row + 1 == w->object->rows;
   msri_field f = {w->wide,           state->x + first,  state->y + first,
                   state->vx + first, state->vy + first, {ties_at(w, TO_RIGHT)}};
@@ -141,20 +141,20 @@ static bool is_at_border(const wave *w, size_t row) {
   return part->number + 1 < part->parts && row + 1 >= part->begin[part->number + 1];
 }
 
-/* The first island of a row from span s on. */
+/* The first island of a row from piece s on. */
 static bool find_island(const wave *w, size_t row, size_t s, island *i) {
   const msri_objects *o = &w->pass->plan->objects;
   const size_t end = o->row[w->object->row + row + 1];
   if (s == end) return false;
-  i->from = o->span[s].column;
-  i->to = i->from + o->span[s].count;
-  for (s++; s < end && o->span[s].column < i->to + NEAR; s++)
-    i->to = (size_t)o->span[s].column + o->span[s].count;
+  i->from = o->piece[s].column;
+  i->to = i->from + o->piece[s].count;
+  for (s++; s < end && o->piece[s].column < i->to + NEAR; s++)
+    i->to = (size_t)o->piece[s].column + o->piece[s].count;
   i->next = s;
   return true;
 }
 
-static size_t first_span(const wave *w, size_t row) {
+static size_t first_piece(const wave *w, size_t row) {
   return w->pass->plan->objects.row[w->object->row + row];
 }
 
@@ -164,8 +164,8 @@ static const slot *open_row(wave *w, size_t row) {
   s->row = row;
   s->in_place = w->in_place && !is_at_border(w, row);
   s->at = s->in_place ? row_in_place(w, row) : row_in_ring(w, row);
-  find_island(w, row, first_span(w, row), &s->first);
-  s->single = s->first.next == first_span(w, row + 1);
+  find_island(w, row, first_piece(w, row), &s->first);
+  s->single = s->first.next == first_piece(w, row + 1);
   return s;
 }
 
@@ -199,7 +199,7 @@ static void clear_pulls(const wave *w, int stage, size_t row, size_t a, size_t b
 /* No forces to where the row below will look for some, but where this row has cells. */
 static void clear_rest(const wave *w, int stage, size_t row, island here) {
   const size_t beyond = w->pass->ways == MSRI_WAYS ? 1 : 0;
-  island below = {.next = first_span(w, row + 1)};
+  island below = {.next = first_piece(w, row + 1)};
   bool more = true;
   while (find_island(w, row + 1, below.next, &below)) {
     size_t done = below.from < beyond ? 0 : below.from - beyond;
