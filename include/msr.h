@@ -705,7 +705,9 @@ MSR_API msr_arrays msr_state_edit(msr_state *state);
  * where its energy was sound (figures.care). */
 MSR_API uint64_t msr_state_iteration(const msr_state *state);
 
-/* Advances to `iterations` of DT from here. The guard looks at speeds every 16 steps, and at all
+/* Advances to `iterations` of DT from here. Methods that split take an evaluation of the forces
+ * more in each call where they step row by row (see msr_plan_options.threads): a call is better of
+ * many iterations than of one. The guard looks at speeds every 16 steps, and at all
  * energies every 256: MSR_EUNSTABLE names the mass, its longest spring, the time and a step that is
  * stable. With figures.care, x, y, vx, vy are kept every 64 iterations (128 of two steps, 256 of
  * one); once 2 % of what the scene had to give came from nowhere, or was lost where nothing takes
