@@ -23,7 +23,7 @@ V           =
 WARNINGS   = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wvla -Wundef \
              -Wdouble-promotion -Wformat=2 -Wcast-qual -Wwrite-strings -Wpointer-arith
 C_WARNINGS = -Wstrict-prototypes -Wmissing-prototypes
-LANGUAGE   = -std=c11 -D_POSIX_C_SOURCE=200809L -Iinclude
+LANGUAGE   = -std=c11 -D_POSIX_C_SOURCE=200809L -pthread -Iinclude
 # Part of correctness: a state has the same bits with either compiler and any vector width.
 ARITHMETIC = -ffp-contract=off -fno-math-errno
 SANITIZE   = $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -31,11 +31,10 @@ SANITIZE   = $(if $(SAN),-fsanitize=$(SAN) -fno-sanitize-recover=all -fno-omit-f
 # pkg-config is asked once, when the first command needs it: `make deps` may just have installed it.
 GSL_CFLAGS  = $(eval GSL_CFLAGS := $(shell $(PKG_CONFIG) --cflags gsl 2>/dev/null))$(GSL_CFLAGS)
 GSL_LIBS    = $(eval GSL_LIBS := $(shell $(PKG_CONFIG) --libs gsl 2>/dev/null))$(GSL_LIBS)
-THREADS     = -pthread
 
-COMPILE     = $(CC) $(THREADS) $(LANGUAGE) $(WARNINGS) $(C_WARNINGS) $(CFLAGS) $(ARITHMETIC) $(SANITIZE) \
+COMPILE     = $(CC) $(LANGUAGE) $(WARNINGS) $(C_WARNINGS) $(CFLAGS) $(ARITHMETIC) $(SANITIZE) \
               -fPIC -fvisibility=hidden
-LINK        = $(CC) $(THREADS) $(CFLAGS) $(SANITIZE) $(LDFLAGS)
+LINK        = $(CC) -pthread $(CFLAGS) $(SANITIZE) $(LDFLAGS)
 
 # ---- Files ---------------------------------------------------------------------------------------
 

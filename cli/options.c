@@ -43,6 +43,9 @@ const option all_options[] = {
     {0, "impacts", "kept|located", "order 1 and no heating, or the full order (kept)", FOR_RUNS,
      &a_rule, FIELD(impacts)},
 
+    {0, "threads", "N", "threads that step, draw and write (1)", FOR_RUNS, &a_team, FIELD(threads),
+     .group = "Speed"},
+
     {0, "until", "T", "how much of the scene is compared, in s (all)", FOR_ACCURACY, &a_positive,
      FIELD(until), .group = "Study"},
     {0, "integrators", "A,B,C", "names that 'msr list' shows (all but euler)", FOR_ACCURACY,

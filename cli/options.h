@@ -27,8 +27,8 @@ typedef struct settings {
   size_t n_integrators;                                /* 0: all */
   uint64_t substeps, impacts;                          /* as in msr_plan_options, and so are */
   double atol, rtol;
-  double accuracy, until, budget; /* 0: not asked for */
-  uint64_t neighbours, border_closed, seed, scale;
+  double accuracy, until, budget;                           /* 0: not asked for */
+  uint64_t neighbours, border_closed, seed, scale, threads; /* threads 0: not asked for */
   double wind, gust, gust_time, drag, damping, restitution, friction, diameter;
   push *pushes; /* [n_pushes] */
   size_t n_pushes;

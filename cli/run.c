@@ -36,8 +36,11 @@ static msr_status explain(const watch *w, msr_status status, msr_error *err) {
 /* Runs and closes the outputs, whatever happens. */
 static msr_status advance(watch *w, msr_state *state, outputs *out, msr_error *err) {
   out->sink[out->n] = watch_sink(w);
-  const msr_run_options options = {
-      .sinks = out->sink, .n_sinks = out->n + 1, .poll = watch_poll, .data = w};
+  const msr_run_options options = {.sinks = out->sink,
+                                   .n_sinks = out->n + 1,
+                                   .poll = watch_poll,
+                                   .data = w,
+                                   .threads = (unsigned)s->threads};
   const msr_status status = msr_run(state, &options, err);
   status_line_end(&w->line);
   const msr_status closed = outputs_close(out, status == MSR_OK ? err : NULL);

@@ -70,7 +70,8 @@ static msr_plan_options options_of(const settings *s) {
                             .substeps = s->substeps,
                             .atol = adaptive ? s->atol : 0,
                             .rtol = adaptive ? s->rtol : 0,
-                            .impacts = (msr_impacts)s->impacts};
+                            .impacts = (msr_impacts)s->impacts,
+                            .threads = (unsigned)s->threads};
 }
 
 static void tell_notes(const settings *s, const msr_plan *plan) {
@@ -92,6 +93,7 @@ static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **
   const bool chooses = s->accuracy > 0;
   msr_accuracy_choice choice = {.options = options_of(s)};
   msr_status status = chooses ? study_choose(s, scene, &choice, err) : MSR_OK;
+  choice.options.threads = (unsigned)s->threads;
   if (status == MSR_OK) status = msr_plan_create(scene, &choice.options, plan, err);
   if (status != MSR_OK) return status;
   if (chooses) study_tell_choice(s, &choice);

@@ -205,6 +205,7 @@ const kind a_size = {.wants = "a number, 0 or more", .read = read_real, .max = D
 const kind a_share = {.wants = "a number from 0 to 1", .read = read_real, .max = 1};
 const kind a_count = {"a whole number from 1 to 2147483647", read_whole, .least = 1,
                       .most = 2147483647};
+const kind a_team = {"a whole number from 1 to 256", read_whole, .least = 1, .most = 256};
 const kind a_seed = {"a whole number from 0 to 18446744073709551615", read_whole,
                      .most = UINT64_MAX};
 const kind a_degree = {.wants = "4 or 8", .read = read_whole, .names = degrees};

@@ -18,7 +18,8 @@ typedef struct kind {
   const char *(*nearest)(const char *text); /* what a text that isn't right was meant to be */
 } kind;
 
-extern const kind a_flag, a_path, a_directory, a_real, a_positive, a_size, a_share, a_count, a_seed,
-    a_degree, a_border, a_substeps, a_rule, an_integrator, integrators, a_push, a_stripe, a_figure;
+extern const kind a_flag, a_path, a_directory, a_real, a_positive, a_size, a_share, a_count, a_team,
+    a_seed, a_degree, a_border, a_substeps, a_rule, an_integrator, integrators, a_push, a_stripe,
+    a_figure;
 
 #endif

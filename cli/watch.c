@@ -14,16 +14,22 @@ void watch_start(watch *w, const settings *s, const msr_plan *plan) {
   signals_catch();
 }
 
-static void follow_energy(watch *w, double energy) {
-  if (w->frames == 0) w->first_energy = w->least_energy = w->most_energy = energy;
+static void follow_energy(watch *w, uint64_t frame, double energy) {
+  if (frame == 0) w->first_energy = w->least_energy = w->most_energy = energy;
   w->least_energy = fmin(w->least_energy, energy);
   w->most_energy = fmax(w->most_energy, energy);
 }
 
-static msr_status count_frame(void *self, const msr_state *state, uint64_t frame, msr_error *err) {
+static msr_status look(void *self, const msr_state *state, uint64_t frame, msr_error *err) {
   watch *w = self;
   (void)err;
-  if (w->s->verbose) follow_energy(w, msr_state_energy(state).total);
+  if (w->s->verbose) follow_energy(w, frame, msr_state_energy(state).total);
+  return MSR_OK;
+}
+
+static msr_status count_frame(void *self, uint64_t frame, msr_error *err) {
+  watch *w = self;
+  (void)err;
   w->frames = frame + 1;
   return MSR_OK;
 }
@@ -33,14 +39,14 @@ static msr_status close_nothing(void *self, msr_error *err) {
   return MSR_OK;
 }
 
-msr_sink watch_sink(watch *w) { return (msr_sink){w, count_frame, close_nothing}; }
+msr_sink watch_sink(watch *w) { return (msr_sink){w, look, close_nothing, count_frame}; }
 
 static void show(const watch *w, uint64_t done) {
   const double share = (double)done / (double)w->plan.iterations;
   const double rate = (double)done / (w->line.shown - w->line.started);
   const double left = (double)(w->plan.iterations - done) / rate;
   status_line_show("frame %" PRIu64 "/%" PRIu64 "  %.0f %%  %.0f iterations/s  %.0f:%02.0f left",
-                   w->frames, w->plan.images, 100 * share, rate, floor(left / 60),
+                   (uint64_t)w->frames, w->plan.images, 100 * share, rate, floor(left / 60),
                    floor(fmod(left, 60)));
 }
 

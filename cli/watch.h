@@ -8,7 +8,7 @@ typedef struct watch {
   const settings *s;
   msr_plan_figures plan;
   status_line line;
-  uint64_t frames; /* that all outputs took */
+  _Atomic uint64_t frames; /* that all outputs took and completed, maybe in another thread */
   double first_energy, least_energy, most_energy;
 } watch;
 

@@ -20,7 +20,8 @@
  *
  * Threads: there is no global state. A scene, a state, a renderer or a sink belongs to one thread
  * at a time; a plan is immutable and may be shared by any number of states in any number of
- * threads.
+ * threads. The library begins threads of its own only where it's told to (msr_run_options), and
+ * ends them before it returns.
  *
  * Option structs are valid when all zero: zero means the default that their fields state.
  */
@@ -771,7 +772,8 @@ typedef struct msr_style {
 } msr_style;
 
 /* Draws the states of a plan; the plan must outlive it. `style` may be NULL. MSR_EUSAGE if the
- * scene has no picture or the frame would be too large, MSR_ENOMEM. */
+ * scene has no picture or the frame, one pixel of the scene larger on each side, would have 2^31
+ * pixels or more; MSR_ENOMEM. */
 MSR_API msr_status msr_renderer_create(const msr_plan *plan, const msr_style *style,
                                        msr_renderer **renderer, msr_error *err);
 
@@ -785,16 +787,21 @@ MSR_API const msr_picture *msr_renderer_draw(msr_renderer *renderer, const msr_s
 /* What takes the frames of a run; one of your own is used as the library's are. */
 typedef struct msr_sink {
   void *self;
+  /* Takes a frame: all of it, or what complete needs. */
   msr_status (*write)(void *self, const msr_state *state, uint64_t frame, msr_error *err);
   /* Finishes and frees; what was written so far stays and is whole. NULL: nothing to do. */
   msr_status (*close)(void *self, msr_error *err);
+  /* Called after write, once all sinks took the frame: the part of the work that needs the state no
+   * longer, such as drawing, or writing to a disk. It may be called in a thread of the library's
+   * (msr_run_options), but never while write or close is. NULL: there is none. */
+  msr_status (*complete)(void *self, uint64_t frame, msr_error *err);
 } msr_sink;
 
 /* Frames as binary PPM: DIR/frame-000000.ppm ..., each written whole or not at all; DIR
  * and those above it are made.
- * "-" writes them one after the other to standard output. `style` may be NULL. MSR_EUSAGE if DIR
- * holds frames and `overwrite` is false; with it, frames that were there are removed first.
- * MSR_EIO, MSR_ENOMEM. */
+ * "-" writes them one after the other to standard output, which is made to hold more if it's a pipe
+ * and the system can. `style` may be NULL. MSR_EUSAGE if DIR holds frames and `overwrite` is false;
+ * with it, frames that were there are removed first. MSR_EIO, MSR_ENOMEM. */
 MSR_API msr_status msr_frames_open(const msr_plan *plan, const char *dir, const msr_style *style,
                                    bool overwrite, msr_sink *sink, msr_error *err);
 
@@ -814,13 +821,17 @@ MSR_API msr_status msr_trajectory_open(const msr_plan *plan, const char *path, m
 MSR_API msr_status msr_sink_close(msr_sink *sink, msr_error *err);
 
 typedef struct msr_run_options {
-  const msr_sink *sinks; /* [n_sinks], each given every frame in turn */
+  const msr_sink *sinks; /* [n_sinks], each given every frame in turn; then they complete it */
   size_t n_sinks;
   /* Called with the state before every substep and every stretch of long steps, which is an
    * iteration or a part of it (NULL: none); a status other than MSR_OK ends the run and comes back
    * unchanged. Running the state again goes on from there. */
   msr_status (*poll)(void *data, const msr_state *state);
   void *data;
+  /* 2 or more: frames are completed by the sinks in a thread that lasts as long as the run, beside
+   * the simulation of the next one; what fails there comes back at the next frame or at the end. 0
+   * or 1, or if the system has no thread left: in the caller's, before the run goes on. */
+  unsigned threads;
 } msr_run_options;
 
 /* Runs the state from where it is to the plan's last iteration; `options` may be NULL. Every frame

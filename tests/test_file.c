@@ -2,6 +2,7 @@
  * written replaces the old one at once or leaves everything as it was.
  * link: --wrap=malloc --wrap=calloc --wrap=realloc */
 #include "base/file.h"
+#include "base/pipe.h"
 
 #include "alloc.h"
 #include "files.h"
@@ -298,6 +299,32 @@ static void devices_and_pipes_are_written_directly(void **state) {
   unlink(path_of("pipe"));
 }
 
+/* Bytes that a pipe takes before anybody reads. */
+static size_t capacity_of(bool widened) {
+  static const char bytes[4096];
+  int ends[2];
+  assert_int_equal(pipe(ends), 0);
+  if (widened) msri_pipe_widen(ends[1]);
+  assert_int_equal(fcntl(ends[1], F_SETFL, O_NONBLOCK), 0);
+  size_t size = 0;
+  for (ssize_t n = 0; n >= 0; size += n > 0 ? (size_t)n : 0)
+    n = write(ends[1], bytes, sizeof bytes);
+  close(ends[0]);
+  close(ends[1]);
+  return size;
+}
+
+static void pipes_are_widened(void **state) {
+  (void)state;
+  const size_t before = capacity_of(false), after = capacity_of(true);
+#ifdef __linux__
+  assert_true(after > before);
+#else
+  assert_true(after >= before);
+#endif
+  msri_pipe_widen(-1); // what is no pipe is left alone
+}
+
 /* Redirects `fd` to a file that holds "old" and writes to `path`, which stands for it. */
 static void check_standing(int fd, const char *path) {
   const int before = dup(fd), file_fd = open(path_of("out"), O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -434,6 +461,7 @@ int main(void) {
       cmocka_unit_test(a_link_is_followed),
       cmocka_unit_test(a_name_alone_is_enough),
       cmocka_unit_test(devices_and_pipes_are_written_directly),
+      cmocka_unit_test(pipes_are_widened),
       cmocka_unit_test(standard_output_goes_on_where_it_was),
       cmocka_unit_test(what_cannot_be_written_says_why),
       cmocka_unit_test(a_full_disk_is_noticed),

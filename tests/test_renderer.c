@@ -1,8 +1,10 @@
 /* test_renderer.c - drawing: the first frame is the scene, a scaled one its magnification, and no
- * state, however far astray, does harm. */
+ * state, however far astray, does harm; to the byte as pixel by pixel, by every kernel. */
 #include "art.h"
+#include "run/canvas.h"
 
 #include <limits.h>
+#include <math.h>
 
 /* ---- Pictures */
 
@@ -225,6 +227,141 @@ static void stripes_move_with_their_masses(void **unused) {
   end(d);
 }
 
+/* ---- Pixel by pixel */
+
+/* Is pixel `p` among the `scale` from `first` on? */
+static bool covers(double first, unsigned scale, size_t p) {
+  return (double)p >= first && (double)p < first + scale;
+}
+
+/* The simplest way to draw a mass: every pixel is asked whether its square is there. */
+static void draw_mass(msr_picture *frame, const msr_picture *scene, unsigned scale, double x,
+                      double y, const unsigned char *rgb) {
+  const double column = floor((x - 0.5) * scale + 0.5);
+  const double row = ceil(((double)scene->height - y - 0.5) * scale - 0.5);
+  for (size_t p = 0; p < frame->width * frame->height; p++) {
+    const size_t c = p % frame->width, r = p / frame->width;
+    const unsigned char *under = scene->rgb + 3 * (r / scale * scene->width + c / scale);
+    const bool support = memcmp(under, rgb_of('#'), 3) == 0;
+    if (!support && covers(column, scale, c) && covers(row, scale, r))
+      memcpy(frame->rgb + 3 * p, rgb, 3);
+  }
+}
+
+static void draw_supports(msr_picture *frame, const msr_picture *scene, unsigned scale) {
+  for (size_t p = 0; p < frame->width * frame->height; p++) {
+    const size_t c = p % frame->width / scale, r = p / frame->width / scale;
+    const unsigned char *under = scene->rgb + 3 * (r * scene->width + c);
+    if (memcmp(under, rgb_of('#'), 3) == 0) memcpy(frame->rgb + 3 * p, under, 3);
+  }
+}
+
+static msr_picture *drawn_simply(const msr_picture *scene, const msr_style *style,
+                                 const msr_view *s) {
+  static const unsigned char green[] = {0, 160, 0};
+  msr_picture *frame;
+  const unsigned scale = style->scale ? style->scale : 1;
+  must(msr_picture_create(scale * scene->width, scale * scene->height, &frame, &why));
+  draw_supports(frame, scene, scale);
+  size_t i = 0;
+  for (size_t p = 0; p < scene->width * scene->height; p++) {
+    const unsigned char *rgb = scene->rgb + 3 * p;
+    if (memcmp(rgb, rgb_of('#'), 3) == 0 || memcmp(rgb, rgb_of('.'), 3) == 0) continue;
+    if (style->stripes && p / scene->width / style->stripes % 2 == 1) rgb = green;
+    draw_mass(frame, scene, scale, s->x[i], s->y[i], rgb);
+    i++;
+  }
+  assert_int_equal(i, s->n);
+  return frame;
+}
+
+/* Inside and about the picture, on edges and next to them, and anywhere. */
+static double anywhere(size_t size) {
+  static const double odd[] = {0,   -0.0,  5e-324,  -5e-324,  1e300,    -1e300,
+                               1e9, -1e18, DBL_MAX, -DBL_MAX, INFINITE, NO_NUMBER};
+  const int wide = 4 * ((int)size + 6);
+  const double edge = (double)(rand() % wide) / 4 - 3;
+  switch (rand() % 4) {
+  case 0:
+    return edge;
+  case 1:
+    return nextafter(edge, rand() % 2 ? 1e3 : -1e3);
+  case 2:
+    return rand() % 8 ? edge : odd[(size_t)rand() % LENGTH(odd)];
+  default:
+    return edge + (double)rand() / RAND_MAX / 4;
+  }
+}
+
+static void scatter(msr_state *state, const msr_picture *scene) {
+  const msr_arrays a = msr_state_edit(state);
+  const size_t n = msr_state_view(state).n;
+  for (size_t i = 0; i < n; i++) a.x[i] = anywhere(scene->width), a.y[i] = anywhere(scene->height);
+}
+
+static void frames_are_those_drawn_simply(void **unused) {
+  (void)unused;
+  for (unsigned trial = 0; trial < 700; trial++) {
+    const msr_style style = {.scale = trial % 8, .stripes = trial % 3};
+    msr_picture *scene = random_picture(trial % 8 < 3 ? 24 : 8);
+    if (trial % 5 == 0)
+      for (size_t p = 0; p < scene->width * scene->height; p++)
+        if (p % 7) memcpy(scene->rgb + 3 * p, rgb_of('o'), 3);
+    const drawing d = drawing_of_scene(scene_in(scene), &style);
+    for (int again = 0; again < 2; again++) {
+      scatter(d.state, scene);
+      const msr_view s = msr_state_view(d.state);
+      msr_picture *due = drawn_simply(scene, &style, &s);
+      assert_same_picture(msr_renderer_draw(d.renderer, d.state), due);
+      msr_picture_free(due);
+    }
+    end(d);
+    msr_picture_free(scene);
+  }
+}
+
+/* ---- Kernels */
+
+enum { PLACES = 1003, SIDE = 37 };
+
+/* What a kernel makes of some places: the pixels of a canvas where squares begin, and of what the
+ * canvas then is in bytes. */
+typedef struct made {
+  int32_t at[PLACES];
+  unsigned char rgb[3 * 9 * SIDE * SIDE];
+} made;
+
+static void make(const msri_canvas_kernel *kernel, size_t scale, const double *x, const double *y,
+                 made *m) {
+  static const uint32_t colour[] = {0x010203};
+  msri_canvas canvas;
+  must(msri_canvas_create(SIDE, SIDE, scale, &canvas, &why));
+  memset(m, 0, sizeof *m);
+  for (int again = 0; again < 2; again++) { // the canvas is left white
+    kernel->find(&canvas, PLACES / (size_t)(1 + again), x, y, m->at);
+    msri_canvas_fill(&canvas, PLACES / (size_t)(1 + again), m->at, colour, 0);
+    kernel->move(&canvas, 0, canvas.height, m->rgb);
+  }
+  msri_canvas_clear(&canvas);
+}
+
+static void kernels_agree(void **unused) {
+  (void)unused;
+  static double x[PLACES], y[PLACES];
+  static made any, wide;
+  for (size_t i = 0; i < PLACES; i++) x[i] = anywhere(SIDE), y[i] = anywhere(SIDE);
+  for (size_t scale = 1; scale < 4; scale++) {
+    const msri_canvas_kernel *last = msri_canvas_kernels;
+    while (last->runs_here) last++;
+    make(last, scale, x, y, &any);
+    for (const msri_canvas_kernel *k = msri_canvas_kernels; k < last; k++) {
+      if (!k->runs_here()) continue;
+      make(k, scale, x, y, &wide);
+      assert_memory_equal(&any, &wide, sizeof any);
+    }
+  }
+}
+
 /* ---- What can't be drawn */
 
 static void frames_that_cannot_be_are_refused(void **unused) {
@@ -259,6 +396,8 @@ int main(void) {
       cmocka_unit_test(masses_by_hand_have_their_colours),
       cmocka_unit_test(every_other_stripe_has_another_colour),
       cmocka_unit_test(stripes_move_with_their_masses),
+      cmocka_unit_test(frames_are_those_drawn_simply),
+      cmocka_unit_test(kernels_agree),
       cmocka_unit_test(frames_that_cannot_be_are_refused),
   };
   return cmocka_run_group_tests_name("renderer", tests, NULL, NULL);

@@ -5,6 +5,8 @@
 
 #include <fcntl.h>
 #include <pthread.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 /* ---- A simulation: a block that falls on a floor, 37 iterations, 10 frames */
@@ -433,7 +435,7 @@ static void a_run_stopped_early_leaves_whole_files(void **unused) {
   must(msr_trajectory_open(plan, path_of("t.npy"), &sinks[0], &why));
   must(msr_stats_open(plan, path_of("s.csv"), &sinks[1], &why));
   must(msr_frames_open(plan, path_of("a"), NULL, false, &sinks[2], &why));
-  const msr_run_options options = {sinks, 3, count_down, &left};
+  const msr_run_options options = {.sinks = sinks, .n_sinks = 3, .poll = count_down, .data = &left};
   assert_int_equal(msr_run(state, &options, NULL), MSR_EINTR);
   msr_state_free(state);
   for (int s = 0; s < 3; s++) must(msr_sink_close(&sinks[s], &why));
@@ -460,7 +462,7 @@ static void a_pipe_is_left_as_it_is(void **unused) {
   msr_sink sink;
   must(msr_trajectory_open(plan, path, &sink, &why));
   msr_state *state = new_state(plan);
-  const msr_run_options options = {&sink, 1, count_down, &left};
+  const msr_run_options options = {.sinks = &sink, .n_sinks = 1, .poll = count_down, .data = &left};
   assert_int_equal(msr_run(state, &options, NULL), MSR_EINTR);
   must(msr_sink_close(&sink, &why));
   msr_state_free(state);
@@ -493,6 +495,54 @@ static void a_full_disk_is_told(void **unused) {
                       "/dev/full: cannot write it: No space left on device; free some space");
   assert_int_equal(run_to_stdout("/dev/full", frames_to_stdout, &err), MSR_EIO);
   assert_non_null(strstr(err.message, "No space left on device"));
+}
+
+/* Writes the state as a frame while files may have `most` bytes. */
+static msr_status write_within(const msr_sink *sink, const msr_state *state, rlim_t most,
+                               msr_error *err) {
+  struct rlimit limit, low;
+  getrlimit(RLIMIT_FSIZE, &limit);
+  low = limit;
+  low.rlim_cur = most;
+  must(sink->write(sink->self, state, 0, &why));
+  signal(SIGXFSZ, SIG_IGN);
+  setrlimit(RLIMIT_FSIZE, &low);
+  const msr_status status = sink->complete(sink->self, 0, err);
+  setrlimit(RLIMIT_FSIZE, &limit);
+  signal(SIGXFSZ, SIG_DFL);
+  return status;
+}
+
+/* Of a frame so large that it's written in pieces: a part leaves nothing, nor a trace in the next.
+ */
+static void a_part_of_a_frame_is_forgotten(void **unused) {
+  (void)unused;
+  enum { SCALE = 40, SIZE = 3 * SCALE * SCALE * WIDTH * HEIGHT };
+  static char bytes[SIZE + 64];
+  static const char header[] = "P6\n320 240\n255\n";
+  const size_t start = sizeof header - 1;
+  const msr_style style = {.scale = SCALE};
+  msr_sink sink;
+  msr_renderer *renderer;
+  msr_error err = {.message = ""};
+  msr_state *state = new_state(plan);
+  must(msr_frames_open(plan, path_of("a"), &style, false, &sink, &why));
+  must(msr_renderer_create(plan, &style, &renderer, &why));
+  assert_int_equal(write_within(&sink, state, SIZE / 8, &err), MSR_EIO);
+  assert_non_null(strstr(err.message, "File too large; make it smaller"));
+  const msr_arrays a = msr_state_edit(state);
+  for (size_t m = 0; m < MASSES; m++) a.x[m] += 3;
+  must(write_within(&sink, state, sizeof bytes, &why));
+  FILE *file = fopen(frame_path("a", 0), "rb");
+  assert_non_null(file);
+  assert_int_equal(fread(bytes, 1, sizeof bytes, file), start + SIZE);
+  assert_int_equal(fclose(file), 0);
+  assert_memory_equal(bytes, header, start);
+  assert_memory_equal(bytes + start, msr_renderer_draw(renderer, state)->rgb, SIZE);
+  must(msr_sink_close(&sink, &why));
+  msr_renderer_free(renderer);
+  msr_state_free(state);
+  remove_frames("a", 1);
 }
 
 static void sinks_with_nowhere_to_go(void **unused) {
@@ -533,7 +583,7 @@ static msr_status see(void *self, const msr_state *state, uint64_t frame, msr_er
 static void my_sinks_see_every_frame(void **unused) {
   (void)unused;
   witness a = {0}, b = {0};
-  const msr_sink sinks[] = {{&a, see, NULL}, {&b, see, NULL}};
+  const msr_sink sinks[] = {{.self = &a, .write = see}, {.self = &b, .write = see}};
   msr_state *state = new_state(plan);
   must(msr_run(state, &(msr_run_options){.sinks = sinks, .n_sinks = 2}, &why));
   assert_int_equal(msr_state_iteration(state), ITERATIONS);
@@ -552,7 +602,7 @@ static void my_sinks_see_every_frame(void **unused) {
 static void a_failing_sink_stops_the_run(void **unused) {
   (void)unused;
   witness a = {.failing = 4}, b = {0};
-  const msr_sink sinks[] = {{&a, see, NULL}, {&b, see, NULL}};
+  const msr_sink sinks[] = {{.self = &a, .write = see}, {.self = &b, .write = see}};
   msr_error err = {.message = ""};
   msr_state *state = new_state(plan);
   assert_int_equal(msr_run(state, &(msr_run_options){.sinks = sinks, .n_sinks = 2}, &err), MSR_EIO);
@@ -571,10 +621,11 @@ static void a_run_goes_on_where_it_was_stopped(void **unused) {
   must(msr_run(whole, NULL, &why));
   for (uint64_t stop = 0; stop < substeps; stop++) {
     witness w = {0};
-    const msr_sink sink = {&w, see, NULL};
+    const msr_sink sink = {.self = &w, .write = see};
     msr_state *state = new_state(plan);
     uint64_t left = stop;
-    const msr_run_options options = {&sink, 1, count_down, &left};
+    const msr_run_options options = {
+        .sinks = &sink, .n_sinks = 1, .poll = count_down, .data = &left};
     assert_int_equal(msr_run(state, &options, NULL), MSR_EINTR);
     assert_int_equal(msr_state_iteration(state), stop / msr_plan_describe(plan).substeps);
     must(msr_run(state, &(msr_run_options){.sinks = &sink, .n_sinks = 1}, &why));
@@ -612,7 +663,7 @@ static void what_poll_returns_comes_back(void **unused) {
 static void unsound_frames_are_not_shown(void **unused) {
   (void)unused;
   witness w = {0};
-  const msr_sink sink = {&w, see, NULL};
+  const msr_sink sink = {.self = &w, .write = see};
   msr_state *state = new_state(plan);
   msr_state_edit(state).x[2] = NO_NUMBER;
   assert_int_equal(msr_run(state, &(msr_run_options){.sinks = &sink, .n_sinks = 1}, NULL),
@@ -625,7 +676,7 @@ static void unsound_frames_are_not_shown(void **unused) {
 static void a_run_of_no_iteration_shows_the_scene(void **unused) {
   (void)unused;
   witness w = {0};
-  const msr_sink sink = {&w, see, NULL};
+  const msr_sink sink = {.self = &w, .write = see};
   msr_plan *still = plan_of(0, 1);
   msr_state *state = new_state(still);
   must(msr_run(state, &(msr_run_options){.sinks = &sink, .n_sinks = 1}, &why));
@@ -677,6 +728,7 @@ int main(void) {
       cmocka_unit_test(a_run_stopped_early_leaves_whole_files),
       cmocka_unit_test(a_pipe_is_left_as_it_is),
       cmocka_unit_test(a_full_disk_is_told),
+      cmocka_unit_test(a_part_of_a_frame_is_forgotten),
       cmocka_unit_test(sinks_with_nowhere_to_go),
       cmocka_unit_test(my_sinks_see_every_frame),
       cmocka_unit_test(a_failing_sink_stops_the_run),

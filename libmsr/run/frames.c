@@ -2,8 +2,8 @@
  * after the other on standard output. */
 #include "base/file.h"
 #include "base/number.h"
-#include "formats/ppm.h"
-#include "plan/state.h"
+#include "base/pipe.h"
+#include "run/renderer.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -73,15 +73,34 @@ static msr_status clear_frames(frames *f, bool overwrite, msr_error *err) {
 /* ---- The sink */
 
 static msr_status take(void *self, const msr_state *state, uint64_t frame, msr_error *err) {
+  (void)frame, (void)err;
+  const frames *f = self;
+  msri_renderer_take(f->renderer, state);
+  return MSR_OK;
+}
+
+/* Rows come in large pieces: another buffer would only copy them. */
+static msr_status create_file(const char *path, msri_file *file, msr_error *err) {
+  const msr_status status = msri_file_create(path, file, err);
+  if (status == MSR_OK) setvbuf(file->stream, NULL, _IONBF, 0);
+  return status;
+}
+
+static msr_status draw_file(const frames *f, msr_error *err) {
+  msri_file file;
+  msr_status status = create_file(f->path, &file, err);
+  if (status != MSR_OK) return status;
+  status = msri_renderer_write(f->renderer, &file, err);
+  if (status == MSR_OK) return msri_file_commit(&file, err);
+  msri_file_abandon(&file);
+  return status;
+}
+
+static msr_status draw(void *self, uint64_t frame, msr_error *err) {
   frames *f = self;
-  const msr_picture *picture = msr_renderer_draw(f->renderer, state);
-  if (f->directory == 0) {
-    const bool written = msri_ppm_write(f->stream.stream, picture);
-    return written ? msri_file_flush(&f->stream, err)
-                   : msri_file_fail(f->stream.path, "write", err);
-  }
+  if (f->directory == 0) return msri_renderer_write(f->renderer, &f->stream, err);
   msri_format(f->path + f->directory, NAME_SIZE, "/frame-%06llu.ppm", (unsigned long long)frame);
-  return msr_picture_write(picture, f->path, err);
+  return draw_file(f, err);
 }
 
 static msr_status finish(void *self, msr_error *err) {
@@ -92,8 +111,14 @@ static msr_status finish(void *self, msr_error *err) {
   return status;
 }
 
+static msr_status open_stream(frames *f, msr_error *err) {
+  const msr_status status = create_file("-", &f->stream, err);
+  if (status == MSR_OK) msri_pipe_widen(fileno(f->stream.stream));
+  return status;
+}
+
 static msr_status open_place(frames *f, const char *dir, bool overwrite, msr_error *err) {
-  if (strcmp(dir, "-") == 0) return msri_file_create(dir, &f->stream, err);
+  if (strcmp(dir, "-") == 0) return open_stream(f, err);
   f->directory = strlen(dir);
   memcpy(f->path, dir, f->directory + 1);
   const msr_status status = make_directory(f->path, err);
@@ -108,7 +133,7 @@ msr_status msr_frames_open(const msr_plan *plan, const char *dir, const msr_styl
   msr_status status = msr_renderer_create(plan, style, &f->renderer, err);
   if (status == MSR_OK) status = open_place(f, dir, overwrite, err);
   if (status == MSR_OK) {
-    *sink = (msr_sink){f, take, finish};
+    *sink = (msr_sink){f, take, finish, draw};
     return MSR_OK;
   }
   msr_renderer_free(f->renderer);

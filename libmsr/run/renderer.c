@@ -2,23 +2,40 @@
  *
  * Masses are drawn in their order over white; supports stay on top. At scale 1 a mass colours the
  * pixel that it is in, so that the state at the start gives the scene's own picture. */
-#include "plan/state.h"
+#include "run/renderer.h"
 
 #include "base/pixel.h"
+#include "formats/ppm.h"
+#include "plan/state.h"
+#include "run/canvas.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Pixels of the canvas, side by side. */
+typedef struct stretch {
+  uint32_t first, count;
+} stretch;
+
 struct msr_renderer {
-  size_t scale;
-  double height;           /* of the scene [px] */
-  msr_picture *background; /* supports over white */
+  msri_canvas canvas;
   msr_picture *frame;
-  unsigned char *rgb; /* [masses][3] */
+  stretch *support; /* [n_supports] */
+  size_t n_supports, support_capacity;
+  size_t masses;
+  int32_t *at;      /* [masses]: pixels of the canvas */
+  uint32_t *colour; /* [masses], or if the stride is 0 [1] */
+  size_t stride;
 };
 
+/* ---- Colours */
+
 static const unsigned char green[3] = {0, 160, 0};
+
+static uint32_t pixel_of(const unsigned char *rgb) {
+  return rgb[0] | (uint32_t)rgb[1] << 8 | (uint32_t)rgb[2] << 16;
+}
 
 /* Gives every other stripe of the scene's rows another colour. */
 static void stripe(const msr_plan *plan, const msr_style *style, unsigned char *rgb, double *y) {
@@ -31,53 +48,99 @@ static void stripe(const msr_plan *plan, const msr_style *style, unsigned char *
   }
 }
 
-static msr_status colour_masses(msr_renderer *renderer, const msr_plan *plan,
-                                const msr_style *style, msr_error *err) {
+static msr_status stripe_masses(const msr_plan *plan, const msr_style *style, unsigned char *rgb,
+                                msr_error *err) {
   const size_t n = plan->figures.masses;
-  renderer->rgb = msri_alloc(n, 3, "the colours", err);
-  if (!renderer->rgb) return MSR_ENOMEM;
-  msri_plan_colours(plan, renderer->rgb);
   if (style->stripes == 0) return MSR_OK;
   double *q = msri_alloc(4 * n, sizeof *q, "the stripes", err);
   if (!q) return MSR_ENOMEM;
   msri_plan_start(plan, q, q + n, q + 2 * n, q + 3 * n);
-  stripe(plan, style, renderer->rgb, q + n);
+  stripe(plan, style, rgb, q + n);
   free(q);
   return MSR_OK;
 }
 
-/* Paints the scale x scale block of a pixel of the scene. */
-static void paint_block(msr_picture *picture, size_t scale, size_t column, size_t row) {
-  for (size_t y = row * scale; y < (row + 1) * scale; y++)
-    memset(picture->rgb + 3 * (y * picture->width + column * scale), 0, 3 * scale);
+/* One colour is kept once. */
+static msr_status keep_colours(msr_renderer *renderer, const unsigned char *rgb, msr_error *err) {
+  const size_t n = renderer->masses;
+  size_t same = n > 0;
+  while (same < n && memcmp(rgb, rgb + 3 * same, 3) == 0) same++;
+  renderer->stride = same < n;
+  const size_t kept = same < n ? n : same > 0;
+  renderer->colour = msri_alloc(kept, sizeof *renderer->colour, "the colours", err);
+  if (!renderer->colour) return MSR_ENOMEM;
+  for (size_t i = 0; i < kept; i++) renderer->colour[i] = pixel_of(rgb + 3 * i);
+  return MSR_OK;
 }
 
-static msr_status paint_background(msr_renderer *renderer, const msr_plan *plan, msr_error *err) {
-  const size_t width = plan->figures.width, height = plan->figures.height, scale = renderer->scale;
-  if (width > SIZE_MAX / scale || height > SIZE_MAX / scale)
-    return msri_fail(err, MSR_EUSAGE, "scale %zu makes the frames too large", scale);
-  msr_status status = msr_picture_create(width * scale, height * scale, &renderer->frame, err);
-  if (status == MSR_OK)
-    status = msr_picture_create(width * scale, height * scale, &renderer->background, err);
-  if (status != MSR_OK) return status;
-  for (size_t row = 0; row < height; row++)
-    for (size_t column = 0; column < width; column++)
-      if (msri_pixel_at(plan->picture, column, row) == MSRI_SUPPORT)
-        paint_block(renderer->background, scale, column, row);
+static msr_status colour_masses(msr_renderer *renderer, const msr_plan *plan,
+                                const msr_style *style, msr_error *err) {
+  unsigned char *rgb = msri_alloc(renderer->masses, 3, "the colours", err);
+  if (!rgb) return MSR_ENOMEM;
+  msri_plan_colours(plan, rgb);
+  msr_status status = stripe_masses(plan, style, rgb, err);
+  if (status == MSR_OK) status = keep_colours(renderer, rgb, err);
+  free(rgb);
+  return status;
+}
+
+/* ---- Supports */
+
+/* The next stretch of supports of a row from a column on; false: there is none. */
+static bool next_support(const msr_plan *plan, size_t row, size_t *from, size_t *to) {
+  const size_t width = plan->figures.width;
+  while (*from < width && msri_pixel_at(plan->picture, *from, row) != MSRI_SUPPORT) ++*from;
+  *to = *from;
+  while (*to < width && msri_pixel_at(plan->picture, *to, row) == MSRI_SUPPORT) ++*to;
+  return *from < width;
+}
+
+/* As every row of pixels in the scene's row has it. */
+static msr_status add_support(msr_renderer *renderer, size_t row, size_t from, size_t to,
+                              msr_error *err) {
+  const size_t scale = renderer->canvas.scale, line = msri_canvas_line(&renderer->canvas);
+  stretch *grown = msri_grow(renderer->support, &renderer->support_capacity,
+                             renderer->n_supports + scale, sizeof *grown, "the supports", err);
+  if (!grown) return MSR_ENOMEM;
+  renderer->support = grown;
+  for (size_t r = scale + row * scale; r < scale + (row + 1) * scale; r++)
+    grown[renderer->n_supports++] =
+        (stretch){(uint32_t)(r * line + scale + from * scale), (uint32_t)((to - from) * scale)};
   return MSR_OK;
+}
+
+static msr_status find_supports(msr_renderer *renderer, const msr_plan *plan, msr_error *err) {
+  msr_status status = MSR_OK;
+  for (size_t row = 0; row < plan->figures.height; row++)
+    for (size_t from = 0, to; status == MSR_OK && next_support(plan, row, &from, &to); from = to)
+      status = add_support(renderer, row, from, to, err);
+  return status;
+}
+
+/* ---- Making */
+
+static msr_status prepare(msr_renderer *renderer, const msr_plan *plan, const msr_style *style,
+                          msr_error *err) {
+  const size_t scale = style->scale ? style->scale : 1;
+  msri_canvas *canvas = &renderer->canvas;
+  renderer->masses = plan->figures.masses;
+  msr_status status =
+      msri_canvas_create(plan->figures.width, plan->figures.height, scale, canvas, err);
+  if (status != MSR_OK) return status;
+  renderer->at = msri_alloc(renderer->masses, sizeof *renderer->at, "the places", err);
+  if (!renderer->at) return MSR_ENOMEM;
+  status = msr_picture_create(canvas->width, canvas->height, &renderer->frame, err);
+  if (status == MSR_OK) status = find_supports(renderer, plan, err);
+  return status == MSR_OK ? colour_masses(renderer, plan, style, err) : status;
 }
 
 msr_status msr_renderer_create(const msr_plan *plan, const msr_style *style,
                                msr_renderer **renderer, msr_error *err) {
   static const msr_style plain = {0};
-  if (!style) style = &plain;
   if (!plan->picture) return msri_fail(err, MSR_EUSAGE, "a scene without a picture has no frames");
   msr_renderer *made = msri_alloc(1, sizeof *made, "a renderer", err);
   if (!made) return MSR_ENOMEM;
-  made->scale = style->scale ? style->scale : 1;
-  made->height = (double)plan->figures.height;
-  msr_status status = paint_background(made, plan, err);
-  if (status == MSR_OK) status = colour_masses(made, plan, style, err);
+  const msr_status status = prepare(made, plan, style ? style : &plain, err);
   if (status == MSR_OK)
     *renderer = made;
   else
@@ -87,42 +150,49 @@ msr_status msr_renderer_create(const msr_plan *plan, const msr_style *style,
 
 void msr_renderer_free(msr_renderer *renderer) {
   if (!renderer) return;
-  msr_picture_free(renderer->background);
+  msri_canvas_clear(&renderer->canvas);
   msr_picture_free(renderer->frame);
-  free(renderer->rgb);
+  free(renderer->support);
+  free(renderer->at);
+  free(renderer->colour);
   free(renderer);
 }
 
-/* The pixels from..to-1 of `size` that a square of `scale` pixels from `first` on covers; false:
- * none. */
-static bool cover(double first, size_t scale, size_t size, size_t *from, size_t *to) {
-  const double last = first + (double)scale;
-  if (!(last > 0 && first < (double)size)) return false;
-  *from = first > 0 ? (size_t)first : 0;
-  *to = last < (double)size ? (size_t)last : size;
-  return true;
+/* ---- Drawing */
+
+void msri_renderer_take(msr_renderer *renderer, const msr_state *state) {
+  const msr_view s = msr_state_view(state);
+  msri_canvas_find(&renderer->canvas, s.n, s.x, s.y, renderer->at);
 }
 
-/* As for supports, a pixel owns its left and lower edges. */
-static void draw_mass(msr_renderer *renderer, double x, double y, const unsigned char *rgb) {
-  msr_picture *frame = renderer->frame;
-  const double scale = (double)renderer->scale;
-  const double first_column = floor((x - 0.5) * scale + 0.5);
-  const double first_row = ceil((renderer->height - y - 0.5) * scale - 0.5);
-  size_t left, right, top, bottom;
-  if (!cover(first_column, renderer->scale, frame->width, &left, &right)) return;
-  if (!cover(first_row, renderer->scale, frame->height, &top, &bottom)) return;
-  for (size_t row = top; row < bottom; row++)
-    for (size_t column = left; column < right; column++) {
-      const size_t at = 3 * (row * frame->width + column);
-      if (renderer->background->rgb[at] != 0) memcpy(frame->rgb + at, rgb, 3);
-    }
+static void paint(const msr_renderer *renderer) {
+  const msri_canvas *canvas = &renderer->canvas;
+  msri_canvas_fill(canvas, renderer->masses, renderer->at, renderer->colour, renderer->stride);
+  for (const stretch *s = renderer->support; s < renderer->support + renderer->n_supports; s++)
+    memset(canvas->pixel + s->first, 0, s->count * sizeof *canvas->pixel);
 }
 
 const msr_picture *msr_renderer_draw(msr_renderer *renderer, const msr_state *state) {
-  msr_picture *frame = renderer->frame;
-  const msr_view s = msr_state_view(state);
-  memcpy(frame->rgb, renderer->background->rgb, 3 * frame->width * frame->height);
-  for (size_t i = 0; i < s.n; i++) draw_mass(renderer, s.x[i], s.y[i], renderer->rgb + 3 * i);
-  return frame;
+  msri_renderer_take(renderer, state);
+  paint(renderer);
+  msri_canvas_move(&renderer->canvas, 0, renderer->canvas.height, renderer->frame->rgb);
+  return renderer->frame;
+}
+
+/* Some rows at a time, from the fastest cache. All are moved whatever happens, so that the canvas
+ * is white. */
+msr_status msri_renderer_write(msr_renderer *renderer, msri_file *file, msr_error *err) {
+  enum { AT_ONCE = 1 << 16 };
+  const size_t line = 3 * renderer->canvas.width, height = renderer->canvas.height;
+  const size_t most = line < AT_ONCE ? AT_ONCE / line : 1;
+  unsigned char *rgb = renderer->frame->rgb;
+  char header[MSRI_PPM_HEADER_SIZE];
+  paint(renderer);
+  msr_status status = msri_file_write(file, header, msri_ppm_header(renderer->frame, header), err);
+  for (size_t row = 0; row < height; row += most) {
+    const size_t count = height - row < most ? height - row : most;
+    msri_canvas_move(&renderer->canvas, row, count, rgb);
+    if (status == MSR_OK) status = msri_file_write(file, rgb, count * line, err);
+  }
+  return status;
 }

@@ -1,4 +1,5 @@
 /* run.c - a whole run: iterations up to each frame, the guard, then the sinks. */
+#include "run/beside.h"
 #include "run/care.h"
 #include "run/step.h"
 
@@ -6,16 +7,16 @@ static msr_status give(const msr_sink *sink, const msr_state *state, uint64_t fr
                        msr_error *err) {
   msr_error said = {MSR_OK, ""};
   const msr_status status = sink->write(sink->self, state, frame, &said);
-  if (status == MSR_OK) return MSR_OK;
-  return msri_hand_on(err, status, &said, "frame %llu: %s", (unsigned long long)frame,
-                      msr_status_text(status));
+  return msri_beside_hand_on(status, &said, frame, err);
 }
 
-static msr_status deliver(msr_state *state, const msr_run_options *options, uint64_t frame,
-                          msr_error *err) {
-  msr_status status = MSR_OK;
+static msr_status deliver(msr_state *state, msri_beside *beside, uint64_t frame, msr_error *err) {
+  const msr_run_options *options = beside->options;
+  msr_status status = msri_beside_wait(beside, err);
   for (size_t s = 0; s < options->n_sinks && status == MSR_OK; s++)
     status = give(&options->sinks[s], state, frame, err);
+  if (status == MSR_OK) status = msri_beside_complete(beside, frame, err);
+  if (status == MSR_OK) state->frames = frame + 1;
   return status;
 }
 
@@ -46,18 +47,25 @@ static uint64_t next_frame(const msr_state *state) {
   return frame;
 }
 
-msr_status msr_run(msr_state *state, const msr_run_options *options, msr_error *err) {
-  static const msr_run_options none = {0};
-  if (!options) options = &none;
+static msr_status run(msr_state *state, msri_beside *beside, msr_error *err) {
   const msr_plan *plan = state->plan;
-  const msri_poll poll = {options->poll, options->data};
+  const msri_poll poll = {beside->options->poll, beside->options->data};
   msr_status status = MSR_OK;
   for (uint64_t f = next_frame(state); f < plan->figures.images && status == MSR_OK; f++) {
     status = step_to(state, msr_plan_frame_iteration(plan, f), &poll, err);
-    if (status == MSR_OK) status = deliver(state, options, f, err);
-    if (status == MSR_OK) state->frames = f + 1;
+    if (status == MSR_OK) status = deliver(state, beside, f, err);
   }
   return status == MSR_OK ? step_to(state, plan->figures.iterations, &poll, err) : status;
+}
+
+msr_status msr_run(msr_state *state, const msr_run_options *options, msr_error *err) {
+  static const msr_run_options none = {0};
+  msri_beside beside;
+  msri_beside_begin(&beside, options ? options : &none);
+  const msr_status status = run(state, &beside, err);
+  const msr_status last = msri_beside_end(&beside, status == MSR_OK ? err : NULL);
+  if (last != MSR_OK) state->frames = beside.frame;
+  return status == MSR_OK ? last : status;
 }
 
 msr_status msr_sink_close(msr_sink *sink, msr_error *err) {

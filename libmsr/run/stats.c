@@ -50,7 +50,7 @@ msr_status msr_stats_open(const msr_plan *plan, const char *path, msr_sink *sink
   msr_status status = msri_file_create(path, &s->file, err);
   if (status == MSR_OK) status = msri_file_write(&s->file, header, sizeof header - 1, err);
   if (status == MSR_OK) {
-    *sink = (msr_sink){s, take, finish};
+    *sink = (msr_sink){s, take, finish, NULL};
     return MSR_OK;
   }
   msri_file_abandon(&s->file);

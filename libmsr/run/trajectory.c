@@ -63,7 +63,7 @@ msr_status msr_trajectory_open(const msr_plan *plan, const char *path, msr_sink 
   msr_status status = msri_file_create(path, &tr->file, err);
   if (status == MSR_OK) status = write_header(tr, tr->planned, err);
   if (status == MSR_OK) {
-    *sink = (msr_sink){tr, take, finish};
+    *sink = (msr_sink){tr, take, finish, NULL};
     return MSR_OK;
   }
   msri_file_abandon(&tr->file);

@@ -1,0 +1,13 @@
+/* renderer.h - drawing in two halves: what needs the state, and the rest. */
+#ifndef MSRI_RENDERER_H
+#define MSRI_RENDERER_H
+
+#include "base/file.h"
+
+/* Takes from the state where its masses are. */
+void msri_renderer_take(msr_renderer *renderer, const msr_state *state);
+
+/* Draws what was taken, as P6, into a file. MSR_EIO. */
+msr_status msri_renderer_write(msr_renderer *renderer, msri_file *file, msr_error *err);
+
+#endif
