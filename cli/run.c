@@ -40,7 +40,7 @@ static msr_status advance(watch *w, msr_state *state, outputs *out, msr_error *e
                                    .n_sinks = out->n + 1,
                                    .poll = watch_poll,
                                    .data = w,
-                                   .threads = (unsigned)s->threads};
+                                   .threads = (unsigned)w->s->threads};
   const msr_status status = msr_run(state, &options, err);
   status_line_end(&w->line);
   const msr_status closed = outputs_close(out, status == MSR_OK ? err : NULL);
