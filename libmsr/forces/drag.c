@@ -58,4 +58,6 @@ const msr_force msr_force_drag = {
     .add = add,
     .flow = flow,
     .rates = rates,
+    .add_load = {.mass = 6, .mass_bytes = 48},
+    .flow_load = {.mass = 6, .mass_bytes = 32},
 };

@@ -121,4 +121,6 @@ const msr_force msr_force_wind = {
     .flow = flow,
     .rates = rates,
     .power = power,
+    .add_load = {.mass = 6, .mass_bytes = 48},
+    .flow_load = {.mass = 6, .mass_bytes = 32},
 };

@@ -75,14 +75,16 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan
   msri_plan_start(plan, q, q + n, v, v + n);
   const msr_view start = msri_plan_view(plan, 0, q, v);
   status = msri_plan_call_for_effects(plan, scene, &start, err);
-  plan->cares = automatic && msri_plan_can_leap(plan);
+  plan->cares = automatic && !msri_plan_cannot_leap(plan);
   if (plan->cares) plan->figures.care = &msr_integrator_energy_momentum;
   plan->careful = plan->cares && msri_plan_crushes(plan, &start);
   if (status == MSR_OK) status = msri_plan_choose_step(plan, &start, substeps, err);
   if (status == MSR_OK && automatic) status = msri_plan_choose_leaps(plan, err);
   free(q);
+  if (status != MSR_OK) return status;
+  msri_plan_complete_effects(plan, &(msri_asked){options->integrator, substeps > 0});
   count_memory(plan);
-  return status;
+  return MSR_OK;
 }
 
 static msr_status check_integrator(const msr_integrator *integrator, msr_error *err) {
@@ -102,6 +104,7 @@ msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *optio
   if (status != MSR_OK) return status;
   msr_plan *made = msri_alloc(1, sizeof *made, "a plan", err);
   if (!made) return MSR_ENOMEM;
+  made->timed = options->timed;
   made->figures = (msr_plan_figures){.integrator = integrator,
                                      .iterations = scene->conf.iterations,
                                      .images = scene->conf.images,

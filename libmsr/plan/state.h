@@ -2,6 +2,7 @@
 #ifndef MSRI_STATE_H
 #define MSRI_STATE_H
 
+#include "plan/meter.h"
 #include "plan/plan.h"
 #include "solvers/stiffness.h"
 
@@ -77,7 +78,7 @@ struct msr_state {
   double *drive;            /* [2n] if plan->followed: driving forces */
   void *discs;              /* memory of plan->discs, if there are */
   char *scratch;            /* [plan->scratch_bytes] */
-  uint64_t *calls;          /* [plan->n_effects] */
+  msri_meter meter;         /* [plan->n_effects], and one for what is no effect */
   msri_stiffness stiffness; /* if plan->graph */
 };
 

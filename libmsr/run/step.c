@@ -65,6 +65,7 @@ msr_status msri_step_once(msr_state *state, const msr_system *system, const msr_
   if (status != MSR_OK) return status;
   if (!integrator->adaptive) state->work.steps++;
   state->end = interval->end;
+  state->meter.calls[state->plan->row.integrator]++;
   return integrator->step(integrator, system, interval, state->q, state->v, &state->work, err);
 }
 
@@ -90,7 +91,7 @@ static msr_status substep(msr_state *state, const msr_system *system, const msri
   const msr_plan_figures *f = &state->plan->figures;
   const msr_interval interval = {msri_state_time(state), f->h,
                                  msri_plan_time(f, state->iteration, state->substep + 1)};
-  msr_status status = poll->call ? poll->call(poll->data, state) : MSR_OK;
+  msr_status status = msri_poll_call(poll, state);
   if (status == MSR_OK) status = step(state, system, &interval, err);
   if (status != MSR_OK) return status;
   state->substep++;
@@ -117,7 +118,8 @@ static msr_status explain(const msr_state *state, msr_status status, const msr_e
                    told ? said->message : msr_status_text(status));
 }
 
-msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *poll, msr_error *err) {
+static msr_status advance_by(msr_state *state, uint64_t iterations, const msri_poll *poll,
+                             msr_error *err) {
   const uint64_t left = UINT64_MAX - state->iteration;
   const uint64_t end = state->iteration + (iterations < left ? iterations : left);
   state->failed = NULL;
@@ -135,6 +137,14 @@ msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *pol
     if (status == MSR_OK && !turned && verdict != MSR_OK)
       return msri_fail(err, verdict, "%s", said.message);
   }
+  return status;
+}
+
+/* What no effect says it's its own is the integrator's. */
+msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *poll, msr_error *err) {
+  const size_t was = msri_meter_turn(&state->meter, state->plan->row.integrator);
+  const msr_status status = advance_by(state, iterations, poll, err);
+  msri_meter_turn(&state->meter, was);
   return status;
 }
 
