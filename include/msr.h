@@ -820,6 +820,9 @@ typedef struct msr_sink {
 MSR_API msr_status msr_frames_open(const msr_plan *plan, const char *dir, const msr_style *style,
                                    bool overwrite, msr_sink *sink, msr_error *err);
 
+/* Wall time that a sink of msr_frames_open has spent on drawing, not writing, so far [s]. */
+MSR_API double msr_frames_drawing(const msr_sink *sink);
+
 /* CSV with the header frame,time,kinetic,spring,gravity,total,px,py,contacts,longest: energies,
  * momentum, contacts since the last frame, longest spring over its rest length. "-" is standard
  * output; a file appears when the sink is closed. MSR_EIO, MSR_ENOMEM. */

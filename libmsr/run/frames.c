@@ -1,5 +1,6 @@
 /* frames.c - the sink that draws every frame as a binary PPM: one file each in a directory, or one
  * after the other on standard output. */
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "formats/ppm.h"
@@ -16,6 +17,7 @@ enum { NAME_SIZE = 32 }; /* of "/frame-000000.ppm" */
 
 typedef struct frames {
   msr_renderer *renderer;
+  double drawing;   /* time that it took so far [s] */
   msri_file stream; /* of a run to standard output */
   size_t directory; /* length of the directory's name; 0: to standard output */
   char path[];      /* directory, then the frame's name */
@@ -74,7 +76,9 @@ static msr_status clear_frames(frames *f, bool overwrite, msr_error *err) {
 
 static msr_status take(void *self, const msr_state *state, uint64_t frame, msr_error *err) {
   frames *f = self;
+  const double start = msri_clock_now();
   const msr_picture *picture = msr_renderer_draw(f->renderer, state);
+  f->drawing += msri_clock_now() - start;
   if (f->directory == 0) {
     const bool written = msri_ppm_write(f->stream.stream, picture);
     return written ? msri_file_flush(&f->stream, err)
@@ -115,3 +119,5 @@ msr_status msr_frames_open(const msr_plan *plan, const char *dir, const msr_styl
   free(f);
   return status;
 }
+
+double msr_frames_drawing(const msr_sink *sink) { return ((const frames *)sink->self)->drawing; }
