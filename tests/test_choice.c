@@ -200,8 +200,10 @@ static double least_cost(const msr_scene *scene, const msr_accuracy *study, doub
     if (p[i].stable && p[i].max + own <= error) fewest = fmin(fewest, (double)p[i].evaluations);
   for (size_t i = 0; i < n; i++) {
     if (!p[i].stable || p[i].max + own > error || (double)p[i].evaluations > 3 * fewest) continue;
-    const msr_plan_options options = {p[i].integrator, p[i].substeps, p[i].atol, 0,
-                                      MSR_IMPACTS_LOCATED};
+    const msr_plan_options options = {.integrator = p[i].integrator,
+                                      .substeps = p[i].substeps,
+                                      .atol = p[i].atol,
+                                      .impacts = MSR_IMPACTS_LOCATED};
     const track t = run(scene, &options);
     least = fmin(least, t.cost);
     free(t.q);
