@@ -252,6 +252,30 @@ static void times_are_of_each_effect_alone(void **unused) {
   }
 }
 
+static msr_status slow_step(const msr_integrator *self, const msr_system *system,
+                            const msr_interval *interval, double *q, double *v, msr_workspace *work,
+                            msr_error *err) {
+  (void)self, (void)err;
+  const msr_status status = system->acceleration(system->self, interval->t, q, v, work->vector);
+  spin();
+  return status;
+}
+
+/* What comes after a force, in the same step, is the integrator's again. */
+static void an_integrator_has_what_is_left(void **unused) {
+  (void)unused;
+  static const msr_integrator slow_steps = {
+      .name = "slow", .summary = "stands still", .step = slow_step, .vectors = 1};
+  const world w = open_world_with(with_all(false),
+                                  &(msr_plan_options){.integrator = &slow_steps, .timed = true});
+  size_t integrator;
+  find(&w, "integrator", &integrator);
+  must(msr_state_step(w.state, 10, &why));
+  const double steps = (double)msr_state_calls(w.state, integrator);
+  assert_true(steps >= 10 && msr_state_seconds(w.state, integrator) >= steps * pause);
+  close_world(w);
+}
+
 static void callbacks_are_nobodys(void **unused) {
   (void)unused;
   msr_conf conf = example;
@@ -295,6 +319,7 @@ int main(void) {
       cmocka_unit_test(operations_are_those_of_the_loops),
       cmocka_unit_test(what_nobody_knows_is_no_number),
       cmocka_unit_test(times_are_of_each_effect_alone),
+      cmocka_unit_test(an_integrator_has_what_is_left),
       cmocka_unit_test(callbacks_are_nobodys),
       cmocka_unit_test(only_times_are_added),
   };
