@@ -47,6 +47,7 @@ static void count_memory(msr_plan *plan) {
   const size_t added = f->masses - plan->n_picture;
   f->plan_bytes =
       sizeof *plan + 3 * f->width * f->height + added * sizeof *plan->mass +
+      plan->n_effects * (2 * sizeof *plan->effect + sizeof *plan->reason) +
       (plan->m ? f->masses * sizeof *plan->m : 0) + mesh->run_capacity * sizeof *mesh->run +
       mesh->n_added * (sizeof *mesh->k + sizeof *mesh->L) +
       mesh->anchor_capacity * sizeof *mesh->anchor + (plan->graph ? plan->graph->bytes : 0) +
