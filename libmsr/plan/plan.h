@@ -170,8 +170,8 @@ enum { MSRI_GLANCE = 16, MSRI_LOOK = 256 };
 
 /* Iterations between two looks with care: 64; where they are one or two steps, 256 steps. */
 static inline uint64_t msri_care_period(const msr_plan_figures *f) {
-  enum { PERIOD = 64 };
-  return f->substeps < 3 ? 4 * PERIOD / f->substeps : PERIOD;
+  enum { ITERATIONS = 64, STEPS = 256 };
+  return f->substeps < 3 ? STEPS / f->substeps : ITERATIONS;
 }
 
 /* Start of every mass. x, y, vx, vy [masses]. */
