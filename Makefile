@@ -52,7 +52,7 @@ BENCH_SRC := $(wildcard tests/bench/*.c tests/bench/*.cc)
 HARD_SRC := $(wildcard tests/stability/*.c)
 BESIDE_SRC := $(wildcard tests/bench/stability/*.c tests/bench/stability/*.cc)
 SOURCES  := $(LIB_SRC) $(CLI_SRC) $(TEST_SRC) $(FUZZ_SRC) $(BITS_SRC) $(HARD_SRC) $(BENCH_SRC) \
-            $(BESIDE_SRC) $(EX_SRC)
+            $(BESIDE_SRC) $(EX_SRC) $(wildcard tests/bench/effects/*.c)
 HEADERS  := $(wildcard include/*.h libmsr/*/*.h cli/*.h tests/*.h tests/fuzz/*.h \
             tests/stability/*.h tests/bench/*.h tests/bench/stability/*.h)
 DOCS     := $(wildcard README.md LICENSE CHANGELOG.md docs/*.md docs/images/*.png include/*.h \
@@ -261,6 +261,10 @@ bench-accuracy: $(BENCH) $(BENCH_RHS)
 bench-guard: $(BUILD)/msr
 	@sh tests/bench/guard.sh $<
 
+## bench-effects: what is off costs nothing: instructions, by valgrind; some minutes
+bench-effects: $(BUILD)/msr
+	@BUILD='$(BUILD)' CC='$(CC)' PKG_CONFIG='$(PKG_CONFIG)' sh tests/bench/effects/run.sh
+
 BESIDE = $(BUILD)/bench/stability
 
 $(BESIDE): $(call object,$(BESIDE_SRC) tests/bench/fail.c) $(BUILD)/libmsr.a
@@ -345,7 +349,7 @@ help:
 
 .PHONY: all examples everything deps demo test check check-gcc check-clang check-san \
         check-valgrind check-tidy check-cppcheck check-format format coverage fuzz run-fuzzers \
-        stability mutations bench-accuracy bench-guard bench-stability report figures \
+        stability mutations bench-accuracy bench-guard bench-effects bench-stability report figures \
         install uninstall clean help
 FORCE:
 .DELETE_ON_ERROR:

@@ -18,6 +18,7 @@ const option all_options[] = {
      FIELD(stats)},
     {0, "trajectory", "FILE.npy", "NumPy array [frames, masses, 4]: x, y, vx, vy", FOR_RUNS,
      &a_path, FIELD(trajectory)},
+    {0, "json", NULL, "the plan as JSON, for programs", FOR_PLAN, &a_flag, FIELD(json)},
     {0, "csv", "FILE.csv", "the table, with all digits; -: to stdout", FOR_ACCURACY, &a_path,
      FIELD(csv), .group = "Results"},
     {0, "plot", "FILE.svg|.png", "the work-precision diagram, by gnuplot", FOR_ACCURACY, &a_figure,
@@ -83,7 +84,7 @@ const option all_options[] = {
 
     {'q', NULL, NULL, "quieter: errors only", FOR_RUNS | FOR_ACCURACY, &a_flag, FIELD(quiet),
      .clashes = {"-v"}, .group = "Messages"},
-    {'v', NULL, NULL, "what is simulated and why; energy at the end", FOR_RUNS, &a_flag,
+    {'v', NULL, NULL, "what is simulated and why, energy, times", FOR_RUNS, &a_flag,
      FIELD(verbose)},
     {'h', "help", NULL, "this help", FOR_ALL, &a_flag, FIELD(help)},
     {0, "version", NULL, "version and licence", FOR_ALL, &a_flag, FIELD(version)},

@@ -33,7 +33,7 @@ typedef struct settings {
   push *pushes; /* [n_pushes] */
   size_t n_pushes;
   msr_style style; /* stripes only */
-  bool force, no_frames, attach, collide, quiet, verbose, help, version;
+  bool force, no_frames, attach, collide, json, quiet, verbose, help, version;
   const char *program; /* what msr was called */
   struct typed *typed; /* [n_typed], options as they were typed, in order */
   size_t n_typed;

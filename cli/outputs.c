@@ -4,6 +4,7 @@
 
 #include "report.h"
 #include "simulation.h"
+#include "status_line.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -31,25 +32,79 @@ static msr_status open_trajectory(const settings *s, const msr_plan *plan, msr_s
   return msr_trajectory_open(plan, s->trajectory, sink, err);
 }
 
-typedef struct output {
+typedef struct row {
+  task task;
   const char *(*path)(const settings *s); /* NULL: not asked for */
   msr_status (*open)(const settings *s, const msr_plan *plan, msr_sink *sink, msr_error *err);
-} output;
+} row;
+
+/* ---- How long it takes */
+
+/* Time since `start` goes to the output, but for what of it went to drawing. */
+static void add_time(output *o, double start, double drawn) {
+  o->seconds[o->task] += status_line_now() - start - drawn;
+  o->seconds[DRAWING] += drawn;
+}
+
+static double drawing(const output *o) {
+  return o->task == WRITING ? msr_frames_drawing(&o->sink) : 0;
+}
+
+static msr_status write_timed(void *self, const msr_state *state, uint64_t frame, msr_error *err) {
+  output *const o = self;
+  const double start = status_line_now(), before = drawing(o);
+  const msr_status status = o->sink.write(o->sink.self, state, frame, err);
+  add_time(o, start, drawing(o) - before);
+  o->frames[o->task]++;
+  return status;
+}
+
+/* Beside the simulation its time isn't a part of the run's. */
+static msr_status complete_timed(void *self, uint64_t frame, msr_error *err) {
+  output *const o = self;
+  if (o->beside) return o->sink.complete(o->sink.self, frame, err);
+  const double start = status_line_now(), before = drawing(o);
+  const msr_status status = o->sink.complete(o->sink.self, frame, err);
+  add_time(o, start, drawing(o) - before);
+  return status;
+}
+
+static msr_status close_timed(void *self, msr_error *err) {
+  output *const o = self;
+  const double start = status_line_now();
+  const msr_status status = msr_sink_close(&o->sink, err);
+  add_time(o, start, 0);
+  return status;
+}
+
+/* ---- Opening and closing */
 
 /* Statistics and trajectory take their place only when they are closed after a frame, so that a
  * failure undoes them; frames are the last, since --force removes those of an earlier run. */
-static const output rows[MOST_OUTPUTS] = {
-    {stats_path, open_stats},
-    {trajectory_path, open_trajectory},
-    {frames_path, open_frames},
+static const row rows[MOST_OUTPUTS] = {
+    {STATS, stats_path, open_stats},
+    {TRAJECTORY, trajectory_path, open_trajectory},
+    {WRITING, frames_path, open_frames},
 };
+
+static msr_status open_row(const row *r, const settings *s, const msr_plan *plan, outputs *out,
+                           msr_error *err) {
+  output *const o = &out->output[out->n];
+  const double start = status_line_now();
+  *o = (output){
+      .task = r->task, .seconds = out->seconds, .frames = out->frames, .beside = s->threads > 1};
+  const msr_status status = r->open(s, plan, &o->sink, err);
+  if (status != MSR_OK) return status;
+  out->sink[out->n++] =
+      (msr_sink){o, write_timed, close_timed, o->sink.complete ? complete_timed : NULL};
+  add_time(o, start, 0);
+  return MSR_OK;
+}
 
 static msr_status open_rows(const settings *s, const msr_plan *plan, outputs *out, msr_error *err) {
   msr_status status = MSR_OK;
   for (size_t i = 0; i < MOST_OUTPUTS && status == MSR_OK; i++) {
-    if (!rows[i].path(s)) continue;
-    status = rows[i].open(s, plan, &out->sink[out->n], err);
-    if (status == MSR_OK) out->n++;
+    if (rows[i].path(s)) status = open_row(&rows[i], s, plan, out, err);
   }
   if (status != MSR_OK) outputs_close(out, NULL);
   return status;
@@ -91,7 +146,7 @@ static msr_status open_in(char *path, bool *made, const settings *s, const msr_p
 }
 
 msr_status outputs_open(const settings *s, const msr_plan *plan, outputs *out, msr_error *err) {
-  out->n = 0;
+  *out = (outputs){.n = 0};
   if (s->no_frames || strcmp(s->output, "-") == 0) return open_rows(s, plan, out, err);
   char *const path = strdup(s->output);
   bool *const made = calloc(strlen(s->output) + 1, sizeof *made);

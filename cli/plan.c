@@ -1,11 +1,15 @@
 /* plan.c - msr plan: what would be simulated and why, what it would take; nothing is run. */
 #include "commands.h"
+#include "effects.h"
+#include "inputs.h"
+#include "plan_json.h"
 #include "report.h"
 #include "signals.h"
 #include "simulation.h"
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct amount {
@@ -98,21 +102,17 @@ static void print_limit(const char *text, const msr_limit *limit, const msr_plan
 
 static bool damps(const msr_plan *plan) {
   size_t n;
-  const msr_effect *const effect = msr_plan_effects(plan, &n);
-  for (size_t i = 0; i < n && effect[i].on; i++) {
-    if (effect[i].force && effect[i].force->uses_velocity) return true;
+  const msr_effect *const all = msr_plan_effects(plan, &n);
+  for (size_t i = 0; i < n && all[i].on; i++) {
+    if (all[i].force && all[i].force->uses_velocity) return true;
   }
   return false;
 }
 
-static msr_status print_limits(const msr_plan *plan, const msr_plan_figures *f, msr_error *err) {
-  msr_stability limits;
-  const msr_status status = msr_plan_stability(plan, &limits, err);
-  if (status != MSR_OK) return status;
-  print_limit("  at rest", &limits.at_rest, f);
-  print_limit("  stretched", &limits.stretched, f);
-  if (damps(plan)) print_limit("  damped", &limits.damped, f);
-  return MSR_OK;
+static void print_limits(const plan_data *d) {
+  print_limit("  at rest", &d->limits.at_rest, &d->f);
+  print_limit("  stretched", &d->limits.stretched, &d->f);
+  if (d->damps) print_limit("  damped", &d->limits.damped, &d->f);
 }
 
 static void print_impacts(const msr_plan_figures *f) {
@@ -163,24 +163,46 @@ static void print_records(const settings *s, const msr_plan_figures *f) {
   }
 }
 
+static void print_text(const plan_data *d) {
+  print_scene(&d->f);
+  print_time(&d->f);
+  print_integrator(d->s, &d->f);
+  print_step(&d->f);
+  print_limits(d);
+  if (d->contacts) print_impacts(&d->f);
+  print_memory(d->s, &d->f);
+  print_frames(d->s, &d->f);
+  print_records(d->s, &d->f);
+  effects_print_costs(stdout, d->list);
+}
+
+static msr_status print_plan(const settings *s, const msr_plan *plan, msr_error *err) {
+  inputs in = {NULL, NULL};
+  plan_data d = {.s = s, .plan = plan, .f = msr_plan_describe(plan)};
+  msr_status status = inputs_find(s, &in, err);
+  if (status == MSR_OK) status = msr_plan_stability(plan, &d.limits, err);
+  if (status != MSR_OK) return status;
+  effect_list *const list = effects_create(s, plan);
+  if (!list) return fail(err, MSR_ENOMEM, "out of memory for the effects");
+  d.picture = in.picture, d.conf = in.conf;
+  d.damps = damps(plan), d.contacts = simulation_contacts(plan);
+  d.list = list;
+  if (s->json) {
+    plan_json_print(stdout, &d);
+  } else {
+    print_text(&d);
+  }
+  free(list);
+  return MSR_OK;
+}
+
 msr_status plan_command(const settings *s, msr_error *err) {
   msr_plan *plan = NULL;
   msr_status status = simulation_plan(s, &plan, err);
   if (status != MSR_OK) return status;
-  const msr_plan_figures figures = msr_plan_describe(plan);
-  print_scene(&figures);
-  print_time(&figures);
-  print_integrator(s, &figures);
-  print_step(&figures);
-  status = print_limits(plan, &figures, err);
-  if (simulation_contacts(plan)) print_impacts(&figures);
-  print_memory(s, &figures);
-  print_frames(s, &figures);
-  print_records(s, &figures);
-  puts("effects");
-  simulation_print_effects(stdout, plan);
+  status = print_plan(s, plan, err);
   msr_plan_free(plan);
-  const msr_status printed = print_end(err);
+  if (status == MSR_OK) status = print_end(err);
   signals_end_by_pipe();
-  return status == MSR_OK ? printed : status;
+  return status;
 }

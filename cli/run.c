@@ -1,12 +1,12 @@
 /* run.c - msr run: simulates, and writes what was asked for. */
 #include "commands.h"
-#include "outputs.h"
 #include "report.h"
 #include "signals.h"
 #include "simulation.h"
 #include "watch.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct progress {
@@ -48,7 +48,9 @@ static msr_status advance(watch *w, msr_state *state, outputs *out, msr_error *e
   return status == MSR_OK ? closed : explain(w, status, err);
 }
 
-static msr_status simulate(const settings *s, const msr_plan *plan, msr_error *err) {
+/* `list` is told of, if it isn't NULL. */
+static msr_status simulate(const settings *s, const msr_plan *plan, const effect_list *list,
+                           msr_error *err) {
   watch w;
   outputs out;
   msr_state *state = NULL;
@@ -57,7 +59,7 @@ static msr_status simulate(const settings *s, const msr_plan *plan, msr_error *e
   watch_start(&w, s, plan);
   status = outputs_open(s, plan, &out, err);
   if (status == MSR_OK) status = advance(&w, state, &out, err);
-  if (status == MSR_OK) watch_print_summary(&w, state);
+  if (status == MSR_OK) watch_print_summary(&w, state, list, &out);
   msr_state_free(state);
   return status;
 }
@@ -66,8 +68,11 @@ msr_status run_command(const settings *s, msr_error *err) {
   msr_plan *plan = NULL;
   msr_status status = simulation_plan(s, &plan, err);
   if (status != MSR_OK) return status;
-  if (s->verbose) simulation_print_effects(stderr, plan);
-  status = simulate(s, plan, err);
+  effect_list *const list = s->verbose ? effects_create(s, plan) : NULL;
+  if (s->verbose && !list) status = fail(err, MSR_ENOMEM, "out of memory for the effects");
+  if (list) effects_print(stderr, list);
+  if (status == MSR_OK) status = simulate(s, plan, list, err);
+  free(list);
   msr_plan_free(plan);
   return status;
 }

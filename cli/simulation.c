@@ -94,6 +94,7 @@ static msr_status compile(const settings *s, const msr_scene *scene, msr_plan **
   msr_accuracy_choice choice = {.options = options_of(s)};
   msr_status status = chooses ? study_choose(s, scene, &choice, err) : MSR_OK;
   choice.options.threads = (unsigned)s->threads;
+  choice.options.timed = s->verbose;
   if (status == MSR_OK) status = msr_plan_create(scene, &choice.options, plan, err);
   if (status != MSR_OK) return status;
   if (chooses) study_tell_choice(s, &choice);
@@ -113,17 +114,9 @@ msr_status simulation_plan(const settings *s, msr_plan **plan, msr_error *err) {
 bool simulation_contacts(const msr_plan *plan) {
   size_t n;
   const msr_effect *const effect = msr_plan_effects(plan, &n);
-  while (n > 0 && !(effect[n - 1].on && !effect[n - 1].force &&
-                    strcmp(effect[n - 1].name, "collisions") != 0))
-    n--;
-  return n > 0;
-}
-
-void simulation_print_effects(FILE *out, const msr_plan *plan) {
-  size_t n;
-  const msr_effect *effects = msr_plan_effects(plan, &n);
-  for (size_t i = 0; i < n; i++) {
-    fprintf(out, "  %-3s  %-10s %s\n", effects[i].on ? "on" : "off", effects[i].name,
-            effects[i].reason);
+  for (size_t i = 0; i < n && effect[i].on; i++) {
+    if (effect[i].role == MSR_ROLE_CONTACT && strcmp(effect[i].name, "collisions") != 0)
+      return true;
   }
+  return false;
 }

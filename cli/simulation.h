@@ -17,7 +17,4 @@ msr_style simulation_style(const settings *s);
 /* Is there anything to hit? */
 bool simulation_contacts(const msr_plan *plan);
 
-/* A line per effect: on or off, and why. */
-void simulation_print_effects(FILE *out, const msr_plan *plan);
-
 #endif

@@ -3,6 +3,7 @@
 #include "watch.h"
 
 #include "signals.h"
+#include "times.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -107,7 +108,8 @@ static void warn_of_heating(const watch *w, double gain) {
   tell(w->s, "warning", text);
 }
 
-void watch_print_summary(const watch *w, const msr_state *state) {
+void watch_print_summary(const watch *w, const msr_state *state, const effect_list *list,
+                         const outputs *out) {
   if (w->s->quiet) return;
   fprintf(stderr, "msr: %" PRIu64 " frame%s", w->frames, w->frames == 1 ? "" : "s");
   print_where(w);
@@ -117,6 +119,7 @@ void watch_print_summary(const watch *w, const msr_state *state) {
   if (w->s->verbose) print_energy(w);
   if (w->s->verbose) print_leaps(w, state);
   fputs("\n", stderr);
+  if (list) times_print(stderr, list, state, out, took);
   tell_of_care(w, state);
   warn_of_heating(w, msr_state_energy_gain(state));
 }

@@ -2,6 +2,7 @@
 #ifndef CLI_WATCH_H
 #define CLI_WATCH_H
 
+#include "outputs.h"
 #include "status_line.h"
 
 typedef struct watch {
@@ -21,7 +22,9 @@ msr_sink watch_sink(watch *w);
 /* For msr_run_options; `data` is the watch. MSR_EINTR after a signal. */
 msr_status watch_poll(void *data, const msr_state *state);
 
-/* One line that says what was done, and a warning if the state came to energy from nowhere. */
-void watch_print_summary(const watch *w, const msr_state *state);
+/* One line that says what was done; a table of times if there is a list of effects; a warning if
+ * the state came to energy from nowhere. */
+void watch_print_summary(const watch *w, const msr_state *state, const effect_list *list,
+                         const outputs *out);
 
 #endif

@@ -158,6 +158,14 @@ static inline double msr_view_mass(const msr_view *s, size_t i) { return s->m[i 
 
 /* ---- Forces ---------------------------------------------------------------------------------- */
 
+/* What a call on all masses takes: so many operations (+ - * / and roots of doubles) and so many
+ * bytes of arrays (each element once for reading, once for writing) for itself, for each mass and
+ * for each spring. All 0: nobody knows. */
+typedef struct msr_load {
+  double call, mass, spring;                   /* operations */
+  double call_bytes, mass_bytes, spring_bytes; /* bytes */
+} msr_load;
+
 /* A kind of force. Only name, summary and add are required; NULL, false and 0 do for the rest, but
  * conservative goes with energy, both or neither.
  * A callback's status other than MSR_OK ends what called it and comes back unchanged; one that is
@@ -217,6 +225,7 @@ typedef struct msr_force {
    * whatever the velocities [kg px^2/s^3]; it may be called after every step. NULL: for the guard
    * the library asks add() after every step. */
   double (*power)(const void *self, void *scratch, const msr_view *s);
+  msr_load add_load, flow_load; /* what add() and flow() take, where masses are equal */
 } msr_force;
 
 /* F_ij = k (|x_ij| - L) x_ij / |x_ij|, 0 at |x_ij| = 0. Every scene has it: it can't be added. */
@@ -569,6 +578,8 @@ typedef struct msr_plan_options {
   unsigned threads; /* that a state steps with, up to 256; 0: 1. Each state starts its own, which
                      * end with it. Bits don't depend on them. They serve methods that split, on a
                      * picture's springs with gravity and air; else they have nothing to do */
+  bool
+      timed; /* states measure the time of each effect (msr_state_seconds); else no clock is read */
 } msr_plan_options;
 
 /* Compiles the scene, which may be freed after; the integrator must outlive the plan. `options` may
@@ -584,16 +595,35 @@ MSR_API void msr_plan_free(msr_plan *plan);
 /* The i-th thing that a user should know about the plan, or NULL past the last. */
 MSR_API const char *msr_plan_warning(const msr_plan *plan, size_t i);
 
-/* Something that a scene may call for: a force or a contact. */
+/* What is done about an effect. */
+typedef enum msr_role {
+  MSR_ROLE_FORCE,   /* a force acts */
+  MSR_ROLE_CONTACT, /* supports, border, collisions: something may be in the way */
+  MSR_ROLE_STEP     /* integrator, leaps: steps in time; guard, care: what watches over them */
+} msr_role;
+
+/* What an effect that is on takes in a step, as the plan knows it without taking one: operations
+ * (+ - * / and roots of doubles) and bytes of arrays that are read and written, in cache or in
+ * memory, as in msr_load, per mass, over all calls of the step. NAN: as many as it takes. Of an
+ * effect that is off all are 0. */
+typedef struct msr_cost {
+  double calls; /* on all masses; below 1: not at every step */
+  double operations, bytes;
+  bool at_least; /* more where something is met */
+} msr_cost;
+
+/* Something that a scene may call for, and what it takes. */
 typedef struct msr_effect {
   const char *name;
   bool on;
-  const char *reason;     /* why it's on, or off; owned by the plan */
-  const msr_force *force; /* NULL: a contact */
+  const char *reason;     /* what called for it, or what is missing; owned by the plan */
+  const msr_force *force; /* NULL: it is none */
+  msr_role role;
+  msr_cost cost;
 } msr_effect;
 
-/* Every effect: first those that are on, in the order in which they act, then those that are off.
- * Their number goes to `n`. */
+/* Every effect: first those that are on, in the order in which they act, forces, contacts, then
+ * what steps and watches; then those that are off. Their number goes to `n`. */
 MSR_API const msr_effect *msr_plan_effects(const msr_plan *plan, size_t *n);
 
 /* The figures of a plan. */
@@ -742,8 +772,17 @@ typedef struct msr_energy {
 } msr_energy;
 MSR_API msr_energy msr_state_energy(const msr_state *state);
 
-/* Times that effect i (of msr_plan_effects) was called to step the state, on all masses at once. */
+/* Times that effect i (of msr_plan_effects) was called to step the state, on all masses at once: a
+ * force or contact; steps of the integrator; tries of leaps, those of care too; looks of the guard,
+ * at energies or speeds; looks and restarts of care. */
 MSR_API uint64_t msr_state_calls(const msr_state *state, size_t effect);
+
+/* Wall time that effect i took in msr_state_step, msr_run and msr_state_check so far [s], if the
+ * plan is `timed`, else 0. It is of that effect alone: the integrator's is without that of the
+ * forces that it asks for, and all together are the time of the steps and checks, but for the
+ * callbacks poll and write. What supports and border take is told as one, of the first that is on,
+ * or as part of collisions where these are on. Begins at 0 with the state, and after a load. */
+MSR_API double msr_state_seconds(const msr_state *state, size_t effect);
 
 /* Collisions of masses with supports and with each other so far, those included that were taken
  * back with their steps (figures.care). */
@@ -804,6 +843,9 @@ typedef struct msr_sink {
  * with it, frames that were there are removed first. MSR_EIO, MSR_ENOMEM. */
 MSR_API msr_status msr_frames_open(const msr_plan *plan, const char *dir, const msr_style *style,
                                    bool overwrite, msr_sink *sink, msr_error *err);
+
+/* Wall time that a sink of msr_frames_open has spent on drawing, not writing, so far [s]. */
+MSR_API double msr_frames_drawing(const msr_sink *sink);
 
 /* CSV with the header frame,time,kinetic,spring,gravity,total,px,py,contacts,longest: energies,
  * momentum, contacts since the last frame, longest spring over its rest length. "-" is standard

@@ -50,7 +50,7 @@ groups=build
 for goal in "${@:-everything}"; do
   case $goal in
   all | demo | examples | install | uninstall | clean | help) ;;
-  test) groups="$groups test" ;;
+  test | bench-guard | bench-effects) groups="$groups test" ;;
   bench-accuracy) groups="$groups bench" ;;
   bench-stability) groups="$groups beside" ;;
   check | coverage | fuzz) groups="$groups test $goal" ;;

@@ -135,9 +135,11 @@ static void every_effect_is_tested(void **unused) {
     if (i == LENGTH(rows)) fail_msg("%s has no row in this test", (*f)->name);
   }
   const world r = run_of(plain(), NULL);
-  size_t n;
-  msr_plan_effects(r.plan, &n);
-  assert_int_equal(n, LENGTH(rows));
+  size_t n, steps = 0; // these are in test_costs.c
+  const msr_effect *effects = msr_plan_effects(r.plan, &n);
+  for (size_t e = 0; e < n; e++) steps += effects[e].role == MSR_ROLE_STEP;
+  assert_int_equal(n, LENGTH(rows) + steps);
+  assert_int_equal(steps, 4);
   close_world(r);
 }
 
@@ -227,9 +229,12 @@ static void without_masses_all_is_off(void **unused) {
 
 static void effects_are_in_the_order_in_which_they_act(void **unused) {
   (void)unused;
-  static const char *const due[] = {"springs",    "push",     "drag",   "push",
-                                    "wind",       "supports", "border", "drag",
-                                    "collisions", "gravity",  "damping"};
+  static const char *const due[] = {"springs",    "push",   "drag",       "push",    "wind",
+                                    "supports",   "border", "integrator", "guard",   "drag",
+                                    "collisions", "leaps",  "care",       "gravity", "damping"};
+  static const msr_role roles[] = {
+      [5] = MSR_ROLE_CONTACT, MSR_ROLE_CONTACT, MSR_ROLE_STEP, MSR_ROLE_STEP,  MSR_ROLE_FORCE,
+      MSR_ROLE_CONTACT,       MSR_ROLE_STEP,    MSR_ROLE_STEP, MSR_ROLE_FORCE, MSR_ROLE_FORCE};
   msr_scene *scene = scene_of(block_on_floor, &still, &closed_border);
   with(scene, &msr_force_push, &(msr_push){0, 1, 1});
   with(scene, &msr_force_drag, &(msr_drag){0.1});
@@ -242,8 +247,9 @@ static void effects_are_in_the_order_in_which_they_act(void **unused) {
   assert_int_equal(n, LENGTH(due));
   for (size_t e = 0; e < n; e++) {
     assert_string_equal(effects[e].name, due[e]);
-    assert_int_equal(effects[e].on, e < 7);
-    assert_int_equal(effects[e].force == NULL, e == 5 || e == 6 || e == 8);
+    assert_int_equal(effects[e].on, e < 9);
+    assert_int_equal(effects[e].role, roles[e]);
+    assert_int_equal(effects[e].force != NULL, roles[e] == MSR_ROLE_FORCE);
   }
   close_world(r);
 }
@@ -257,7 +263,7 @@ static void reasons_say_what_is_meant(void **unused) {
       {plain, "springs", "7 springs between masses, 0 to fixed points"},
       {no_stiffness, "springs", "every stiffness (TENSION_RESSORT) is 0"},
       {loose_masses, "springs", "no two masses are neighbours"},
-      {in_gravity, "gravity", "GRAVITE is 9.8 px/s^2"},
+      {in_gravity, "gravity", "GRAVITE = 9.8 px/s^2"},
       {no_gravity, "gravity", "GRAVITE is 0"},
       {plain, "gravity", "GRAVITE is 0"},
       {drag, "drag", "asked for: c = 0.1 kg/s"},
@@ -268,7 +274,7 @@ static void reasons_say_what_is_meant(void **unused) {
       {push, "push", "asked for: (1, 1) on mass 2"},
       {no_push, "push", "its force is 0"},
       {wind, "wind", "asked for: mean 1 px/s, gusts 1 px/s over 1 s, seed 7; drag c = 0.1 kg/s"},
-      {on_floor, "supports", "8 black pixels; restitution 1, friction 0"},
+      {on_floor, "supports", "8 black pixels, the first at (0,5); restitution 1, friction 0"},
       {plain, "supports", "there is no black pixel"},
       {closed, "border", "it is closed; restitution 1, friction 0"},
       {plain, "border", "it is open"},

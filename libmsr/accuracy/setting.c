@@ -108,7 +108,7 @@ static msr_status look_at_effects(msri_setting *s, msr_error *err) {
   size_t n;
   const msr_effect *effect = msr_plan_effects(s->plan, &n);
   for (size_t e = 0; e < n && effect[e].on; e++) {
-    s->contacts |= effect[e].force == NULL;
+    s->contacts |= effect[e].role == MSR_ROLE_CONTACT;
     s->damped |= effect[e].force && effect[e].force->uses_velocity;
   }
   msr_state *state;

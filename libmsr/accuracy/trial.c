@@ -7,8 +7,9 @@
  * evaluation, and solves by iterations. */
 static const double outer_cost = 0.1, step_cost = 0.3, matrix_cost = 16, iteration_cost = 6;
 
-static double cost_of(const msr_force *force) {
-  return force && msri_force_is_outer(force) ? outer_cost : 1;
+static double cost_of(const msr_effect *effect) {
+  if (effect->role == MSR_ROLE_STEP) return 0;
+  return effect->force && msri_force_is_outer(effect->force) ? outer_cost : 1;
 }
 
 double msri_trial_cost(const msr_state *state) {
@@ -17,7 +18,7 @@ double msri_trial_cost(const msr_state *state) {
   const double order = integrator->order, steps = (double)state->work.steps;
   double cost = step_cost * steps;
   for (size_t e = 0; e < plan->n_effects && plan->effect[e].on; e++)
-    cost += cost_of(plan->effect[e].force) * (double)state->calls[e];
+    cost += cost_of(&plan->effect[e]) * (double)state->meter.calls[e];
   if (integrator->adaptive) cost += order * order / 12 * steps;
   if (integrator->implicit)
     cost += matrix_cost * (double)state->evaluations +
@@ -25,13 +26,10 @@ double msri_trial_cost(const msr_state *state) {
   return cost;
 }
 
-/* Calls of an effect in a step. Of flows there are two or, where a composition of Verlet's keeps
- * its order in air, two to an evaluation. */
+/* Calls of an effect in a step. */
 static double calls_of(const msr_effect *effect, const msr_integrator *integrator,
                        double per_step) {
-  if (!effect->force) return 1;
-  if (!effect->force->uses_velocity || !integrator->splits) return per_step;
-  return integrator->damped_order == 0 ? 2 * per_step : 2;
+  return effect->force ? msri_force_calls(effect->force, integrator, per_step) : 1;
 }
 
 /* An adaptive method takes steps of about Verlet's, of some ten evaluations; an implicit one
@@ -44,7 +42,7 @@ double msri_trial_foretell(const msri_setting *setting, const msr_integrator *in
   const double per_step = declared > 0 ? declared : integrator->implicit ? 3 : 10;
   double cost = step_cost;
   for (size_t e = 0; e < plan->n_effects && plan->effect[e].on; e++)
-    cost += cost_of(plan->effect[e].force) * calls_of(&plan->effect[e], integrator, per_step);
+    cost += cost_of(&plan->effect[e]) * calls_of(&plan->effect[e], integrator, per_step);
   if (integrator->adaptive) cost += order * order / 12;
   if (integrator->implicit) cost += per_step * (matrix_cost + 2 * iteration_cost);
   const double steps =

@@ -129,4 +129,6 @@ const msr_force msr_force_damping = {
     .add = add,
     .flow = flow,
     .rates = rates,
+    .add_load = {.spring = 19, .mass_bytes = 64},
+    .flow_load = {.spring = 21, .mass_bytes = 48},
 };

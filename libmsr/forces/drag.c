@@ -66,4 +66,6 @@ const msr_force msr_force_drag = {
     .flow = flow,
     .rates = rates,
     .relax = relax,
+    .add_load = {.mass = 6, .mass_bytes = 48},
+    .flow_load = {.mass = 6, .mass_bytes = 32},
 };

@@ -19,7 +19,7 @@ static bool idle(const void *params, const msr_view *s, char *why, size_t size) 
 
 static void describe(const void *params, const msr_view *s, char *text, size_t size) {
   (void)s;
-  msri_format(text, size, "GRAVITE is %g px/s^2", ((const msr_gravity *)params)->g);
+  msri_format(text, size, "GRAVITE = %g px/s^2", ((const msr_gravity *)params)->g);
 }
 
 static msr_status add(const void *self, void *scratch, const msr_view *s, double *fx, double *fy) {
@@ -64,4 +64,5 @@ const msr_force msr_force_gravity = {
     .energy = energy,
     .between = between,
     .uniform = uniform,
+    .add_load = {.mass = 1, .mass_bytes = 16},
 };

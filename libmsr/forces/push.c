@@ -75,4 +75,5 @@ const msr_force msr_force_push = {
     .add = add,
     .energy = energy,
     .between = between,
+    .add_load = {.call = 2, .call_bytes = 32},
 };

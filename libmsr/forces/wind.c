@@ -128,4 +128,6 @@ const msr_force msr_force_wind = {
     .rates = rates,
     .relax = relax,
     .power = power,
+    .add_load = {.mass = 6, .mass_bytes = 48},
+    .flow_load = {.mass = 6, .mass_bytes = 32},
 };

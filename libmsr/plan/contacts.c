@@ -10,10 +10,16 @@
 
 /* Contacts are the effects that are on after the terms. */
 static void count(msr_state *state, uint64_t collisions) {
-  const msr_plan *plan = state->plan;
-  for (size_t e = plan->n_terms; e < plan->n_effects && plan->effect[e].on; e++) state->calls[e]++;
+  const size_t first = state->plan->n_terms, n = state->plan->n_contacts;
+  for (size_t e = first; e < first + n; e++) state->meter.calls[e]++;
   state->contacts += collisions;
 }
+
+static size_t enter(msr_state *state) {
+  return msri_meter_turn(&state->meter, state->plan->row.contact);
+}
+
+static void leave(msr_state *state, size_t was) { msri_meter_turn(&state->meter, was); }
 
 /* Pays what masses are owed after collisions. */
 static msr_status settle(msr_state *state, const double *q, double *v) {
@@ -39,12 +45,15 @@ msr_status msri_state_drift(void *self, double h, const double *u, const double 
   const size_t n = state->plan->figures.masses;
   const msri_obstacles all = {state->plan->discs, contact, state->discs};
   double *owed = a ? state->owed : NULL;
+  const size_t was = enter(state);
   const uint64_t collisions = state->plan->discs
                                   ? msri_discs_drift(&all, h, u, a, q, v, owed)
                                   : contact->drift(contact->self, n, h, u, a, q, v, owed);
   state->known.q = NULL;
   count(state, collisions);
-  return owed && collisions > 0 ? settle(state, q, v) : MSR_OK;
+  const msr_status status = owed && collisions > 0 ? settle(state, q, v) : MSR_OK;
+  leave(state, was);
+  return status;
 }
 
 msr_status msri_state_bounce(void *self, double h, const double *q0, const double *v0, double *q,
@@ -55,34 +64,42 @@ msr_status msri_state_bounce(void *self, double h, const double *q0, const doubl
   const msri_obstacles all = {state->plan->discs, contact, state->discs};
   // in the last moment of a step what is owed is nothing, and the rounding of (q - q0) / h is much
   double *owed = contact->meet && h > 1e-3 * state->plan->figures.h ? state->owed : NULL;
+  const size_t was = enter(state);
   const uint64_t collisions = state->plan->discs
                                   ? msri_discs_bounce(&all, h, q0, v0, q, v, owed)
                                   : contact->bounce(contact->self, n, h, q0, v0, q, v, owed);
   *met = collisions > 0;
   state->known.q = NULL;
   count(state, collisions);
-  return owed && *met ? settle(state, q, v) : MSR_OK;
+  const msr_status status = owed && *met ? settle(state, q, v) : MSR_OK;
+  leave(state, was);
+  return status;
 }
 
 void msri_state_meet(msr_state *state, double h, msri_meeting *meeting) {
   const msri_contact *contact = &state->plan->contact;
   const size_t n = state->plan->figures.masses;
   const double *q0 = state->before, *v0 = q0 + 2 * n;
+  const size_t was = enter(state);
   contact->meet(contact->self, n, h, q0, v0, state->q, state->v, meeting);
   count(state, 0);
+  leave(state, was);
 }
 
 void msri_state_strike(msr_state *state) {
   const msri_contact *contact = &state->plan->contact;
   const size_t n = state->plan->figures.masses;
+  const size_t was = enter(state);
   count(state, contact->strike(contact->self, n, state->before, state->q, state->v));
+  leave(state, was);
 }
 
 msr_status msri_state_hold(void *self, const double *q0, const double *q, bool *held, bool *more) {
-  const msr_state *state = self;
+  msr_state *state = self;
   const msri_contact *contact = &state->plan->contact;
-  const size_t n = state->plan->figures.masses;
+  const size_t n = state->plan->figures.masses, was = enter(state);
   *more = contact->hold(contact->self, n, q0, q, held);
+  leave(state, was);
   if (!*more || !state->effort.limited) return MSR_OK;
   for (size_t i = 0; i < 2 * n; i++)
     if (held[i] && !(fabs(q[i] - q0[i]) <= state->effort.reach)) return MSR_EUNSTABLE;
@@ -92,6 +109,8 @@ msr_status msri_state_hold(void *self, const double *q0, const double *q, bool *
 msr_status msri_state_rebound(void *self, const bool *held, const double *push, double *v) {
   msr_state *state = self;
   const msri_contact *contact = &state->plan->contact;
+  const size_t was = enter(state);
   count(state, contact->rebound(contact->self, state->plan->figures.masses, held, push, v));
+  leave(state, was);
   return MSR_OK;
 }

@@ -4,14 +4,17 @@
 #include "plan/plan.h"
 
 #include "base/number.h"
+#include "base/pixel.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* A row for an effect, in the order of calling; its reason is written by the caller. */
-static char *add_effect(msr_plan *plan, const char *name, bool on, const msr_force *force) {
+static char *add_effect(msr_plan *plan, msr_role role, const char *name, bool on,
+                        const msr_force *force) {
   char *reason = plan->reason[plan->n_effects];
-  plan->effect[plan->n_effects++] = (msr_effect){name, on, reason, force};
+  plan->effect[plan->n_effects++] =
+      (msr_effect){.name = name, .on = on, .reason = reason, .force = force, .role = role};
   return reason;
 }
 
@@ -34,7 +37,7 @@ static msr_status compile_force(msri_term *term, const void *params, const msr_v
 
 static msr_status add_term(msr_plan *plan, const msr_force *force, const void *params,
                            const msr_view *start, msr_error *err) {
-  char *reason = add_effect(plan, force->name, false, force);
+  char *reason = add_effect(plan, MSR_ROLE_FORCE, force->name, false, force);
   if (force->idle && force->idle(params, start, reason, MSR_MESSAGE_SIZE)) return MSR_OK;
   msri_term *term = &plan->term[plan->n_terms];
   *term = (msri_term){.force = force, .scratch = plan->scratch_bytes};
@@ -52,23 +55,33 @@ static msr_status add_term(msr_plan *plan, const msr_force *force, const void *p
   return MSR_OK;
 }
 
+/* "12 black pixels, the first at (3,40)": column and row, in reading order. */
+static void describe_supports(const msr_plan *plan, const msr_scene *scene, char *reason) {
+  const size_t width = plan->picture->width, n = scene->n_supports;
+  size_t first = 0;
+  while (msri_pixel_of(plan->picture->rgb + 3 * first) != MSRI_SUPPORT) first++;
+  msri_format(reason, MSR_MESSAGE_SIZE,
+              "%zu black pixel%s, the first at (%zu,%zu); restitution %g, friction %g", n,
+              n == 1 ? "" : "s", first % width, first / width, scene->restitution, scene->friction);
+}
+
 static msr_status add_contact(msr_plan *plan, const msr_scene *scene, msr_error *err) {
   const bool closed = scene->picture && scene->options.closed_border;
   const bool masses = plan->figures.masses > 0, black = scene->n_supports > 0;
   const bool supports = black && masses, border = closed && masses;
   plan->figures.supports = scene->n_supports;
-  char *reason = add_effect(plan, "supports", supports, NULL);
+  char *reason = add_effect(plan, MSR_ROLE_CONTACT, "supports", supports, NULL);
   if (!supports)
     msri_format(reason, MSR_MESSAGE_SIZE, black ? "there is no mass" : "there is no black pixel");
   else
-    msri_format(reason, MSR_MESSAGE_SIZE, "%zu black pixels; restitution %g, friction %g",
-                scene->n_supports, scene->restitution, scene->friction);
-  reason = add_effect(plan, "border", border, NULL);
+    describe_supports(plan, scene, reason);
+  reason = add_effect(plan, MSR_ROLE_CONTACT, "border", border, NULL);
   if (!border)
     msri_format(reason, MSR_MESSAGE_SIZE, closed ? "there is no mass" : "it is open");
   else
     msri_format(reason, MSR_MESSAGE_SIZE, "it is closed; restitution %g, friction %g",
                 scene->restitution, scene->friction);
+  plan->n_contacts += (size_t)supports + border;
   if (!supports && !border) return MSR_OK;
   const msri_supports_options options = {closed, scene->restitution, scene->friction,
                                          plan->figures.impacts};
@@ -85,7 +98,8 @@ static msr_status add_collisions(msr_plan *plan, const msr_scene *scene, const m
   } else if (scene->diameter > 0) {
     off = "fewer than two masses";
   }
-  char *reason = add_effect(plan, "collisions", plan->discs, NULL);
+  plan->n_contacts += plan->discs != NULL;
+  char *reason = add_effect(plan, MSR_ROLE_CONTACT, "collisions", plan->discs, NULL);
   msri_format(reason, MSR_MESSAGE_SIZE, "%s", off);
   if (plan->discs)
     msri_format(reason, MSR_MESSAGE_SIZE, "asked for: discs of diameter %g px; restitution %g",
@@ -102,8 +116,65 @@ static bool listed(const msr_plan *plan, const msr_force *force) {
 static void add_absent(msr_plan *plan) {
   for (const msr_force *const *f = msr_forces; *f; f++)
     if (!listed(plan, *f))
-      msri_format(add_effect(plan, (*f)->name, false, *f), MSR_MESSAGE_SIZE, "%s",
+      msri_format(add_effect(plan, MSR_ROLE_FORCE, (*f)->name, false, *f), MSR_MESSAGE_SIZE, "%s",
                   (*f)->absent ? (*f)->absent : "not asked for");
+}
+
+/* ---- What steps, and what watches over it */
+
+static void add_integrator(msr_plan *plan, const msri_asked *asked) {
+  const msr_integrator *i = plan->figures.integrator;
+  const bool on = plan->figures.masses > 0;
+  char *reason = add_effect(plan, MSR_ROLE_STEP, "integrator", on, NULL);
+  msri_format(reason, MSR_MESSAGE_SIZE, on ? "%s, %s: order %d" : "there is no mass", i->name,
+              asked->integrator ? "asked for" : "the default", i->order);
+}
+
+/* Why steps of the library's own choice are out of the question; NULL: they aren't. */
+static const char *cannot_choose(const msr_plan *plan, const msri_asked *asked) {
+  if (plan->figures.masses == 0) return "there is no mass";
+  if (asked->integrator) return "an integrator was asked for";
+  if (asked->substeps) return "a number of substeps was asked for";
+  return msri_plan_cannot_leap(plan);
+}
+
+static void add_leaps(msr_plan *plan, const msri_asked *asked) {
+  const msr_plan_figures *f = &plan->figures;
+  const char *const cannot = cannot_choose(plan, asked);
+  char *reason = add_effect(plan, MSR_ROLE_STEP, "leaps", f->leaps, NULL);
+  msri_format(reason, MSR_MESSAGE_SIZE, "%s", cannot ? cannot : "");
+  if (cannot) return;
+  msri_format(reason, MSR_MESSAGE_SIZE, "an iteration takes %llu substep%s: %s%s",
+              (unsigned long long)f->substeps, f->substeps == 1 ? "" : "s",
+              f->leaps ? f->leaps->name : "too few for it to pay",
+              f->leaps ? ", implicit, wherever cheaper" : "");
+}
+
+static void add_guard(msr_plan *plan) {
+  const bool on = plan->figures.masses > 0;
+  msri_format(add_effect(plan, MSR_ROLE_STEP, "guard", on, NULL), MSR_MESSAGE_SIZE,
+              on ? "always: stops what is unstable; speeds every %d steps, energies every %d"
+                 : "there is no mass",
+              MSRI_GLANCE, MSRI_LOOK);
+}
+
+static void add_care(msr_plan *plan, const msri_asked *asked) {
+  const msr_plan_figures *f = &plan->figures;
+  const char *const cannot = cannot_choose(plan, asked);
+  char *reason = add_effect(plan, MSR_ROLE_STEP, "care", f->care, NULL);
+  msri_format(reason, MSR_MESSAGE_SIZE, "%s", cannot ? cannot : "");
+  if (!cannot)
+    msri_format(reason, MSR_MESSAGE_SIZE, "%s %s", f->care->name,
+                plan->careful ? "from the start: springs are crushed there"
+                              : "takes over should energy come from nowhere");
+}
+
+/* The effect of a step by that name, if it is on. */
+static size_t row_of(const msr_plan *plan, const char *name) {
+  size_t e = plan->n_terms + plan->n_contacts;
+  while (e < plan->n_effects && !(plan->effect[e].on && strcmp(plan->effect[e].name, name) == 0))
+    e++;
+  return e;
 }
 
 /* Those that are on first, both halves in their order. `spare` has room for all. */
@@ -124,8 +195,8 @@ static bool conserves(const msr_plan *plan, const msr_scene *scene) {
 
 msr_status msri_plan_call_for_effects(msr_plan *plan, const msr_scene *scene, const msr_view *start,
                                       msr_error *err) {
-  enum { CONTACTS = 3 };
-  size_t most = 1 + scene->n_forces + CONTACTS;
+  enum { CONTACTS = 3, STEPS = 4 };
+  size_t most = 1 + scene->n_forces + CONTACTS + STEPS;
   for (const msr_force *const *f = msr_forces; *f; f++) most++;
   plan->term = msri_alloc(1 + scene->n_forces, sizeof *plan->term, "the forces", err);
   plan->reason = msri_alloc(most, sizeof *plan->reason, "the effects", err);
@@ -138,9 +209,22 @@ msr_status msri_plan_call_for_effects(msr_plan *plan, const msr_scene *scene, co
   if (status == MSR_OK) status = add_collisions(plan, scene, start, err);
   if (status != MSR_OK) return status;
   plan->conserves = conserves(plan, scene);
-  add_absent(plan);
-  sort_effects(plan, plan->effect + most);
   return MSR_OK;
+}
+
+void msri_plan_complete_effects(msr_plan *plan, const msri_asked *asked) {
+  add_integrator(plan, asked);
+  add_leaps(plan, asked);
+  add_guard(plan);
+  add_care(plan, asked);
+  add_absent(plan);
+  sort_effects(plan, plan->effect + plan->n_effects);
+  plan->row = (msri_rows){.contact = plan->n_terms + (plan->discs ? plan->n_contacts - 1 : 0),
+                          .integrator = row_of(plan, "integrator"),
+                          .leaps = row_of(plan, "leaps"),
+                          .guard = row_of(plan, "guard"),
+                          .care = row_of(plan, "care")};
+  msri_plan_count_costs(plan);
 }
 
 const msr_effect *msr_plan_effects(const msr_plan *plan, size_t *n) {

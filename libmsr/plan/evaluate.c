@@ -25,8 +25,9 @@ msr_status msri_state_add_forces(msr_state *state, const msr_view *view,
   for (size_t i = 0; i < state->plan->n_terms && status == MSR_OK; i++) {
     const msri_term *term = &state->plan->term[i];
     if (!wanted(term->force)) continue;
-    state->calls[i] += step;
+    const size_t was = step ? msri_meter_enter(&state->meter, i) : state->meter.effect;
     status = add_force(state, term, view, fx, fy);
+    if (step) msri_meter_turn(&state->meter, was);
   }
   return status;
 }
@@ -92,11 +93,12 @@ static msr_status damp(void *self, double t, double h, bool backward, const doub
     const size_t i = backward ? terms - 1 - n : n;
     const msri_term *term = &state->plan->term[i];
     if (!term->force->uses_velocity) continue;
-    state->calls[i]++;
+    const size_t was = msri_meter_enter(&state->meter, i);
     const msr_status status = term->force->flow
                                   ? term->force->flow(term->self, state->scratch + term->scratch,
                                                       &view, h, backward, v, v + view.n)
                                   : midpoint(state, term, &view, h, v);
+    msri_meter_turn(&state->meter, was);
     if (status == MSR_OK) continue;
     state->failed = term->force;
     return status;

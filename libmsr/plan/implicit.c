@@ -71,9 +71,10 @@ static msr_status between(void *self, double t, const double *q0, const double *
   for (size_t i = 0; i < plan->n_terms; i++) {
     const msri_term *term = &plan->term[i];
     if (!steady(term->force)) continue;
-    state->calls[i]++;
+    const size_t was = msri_meter_enter(&state->meter, i);
     const msr_status status = term->force->between ? call(state, term, &from, &to, a)
                                                    : add_middle(state, term, &from, &to, a);
+    msri_meter_turn(&state->meter, was);
     if (status == MSR_OK) continue;
     state->failed = term->force;
     return status;

@@ -36,17 +36,19 @@ static msr_status explain(msr_plan *plan, msr_error *err) {
       f->leaps->name, f->integrator->name, 100 * msri_leap_share, f->integrator->name);
 }
 
-bool msri_plan_can_leap(const msr_plan *plan) {
+const char *msri_plan_cannot_leap(const msr_plan *plan) {
   const size_t n = plan->figures.masses, springs = plan->mesh.springs.n;
-  return springs > 0 && n < UINT32_MAX && springs < UINT32_MAX && !plan->discs &&
-         (!plan->contact.drift || plan->contact.hold);
+  if (springs == 0) return "there is no spring";
+  if (n >= UINT32_MAX || springs >= UINT32_MAX) return "there are too many masses or springs";
+  if (plan->discs) return "masses collide";
+  return plan->contact.drift && !plan->contact.hold ? "impacts are located" : NULL;
 }
 
 msr_status msri_plan_choose_leaps(msr_plan *plan, msr_error *err) {
   msr_plan_figures *f = &plan->figures;
   const double substep = plan->contact.drift ? supported_substep : free_substep;
   const uint64_t stretch = stretch_of(plan);
-  if (!msri_plan_can_leap(plan)) return MSR_OK;
+  if (msri_plan_cannot_leap(plan)) return MSR_OK;
   if (msri_leap_share * substep * (double)stretch < msri_leap_least) return MSR_OK;
   const msr_status status = msri_graph_create(f->masses, &plan->mesh.springs, &plan->graph, err);
   if (status != MSR_OK) return status;

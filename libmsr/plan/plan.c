@@ -48,6 +48,7 @@ static void count_memory(msr_plan *plan) {
   const size_t added = f->masses - plan->n_picture;
   f->plan_bytes = sizeof *plan + msri_grid_bytes(plan->grid) +
                   added * ((plan->added_move ? 4 : 2) * sizeof *plan->added + 3) +
+                  plan->n_effects * (2 * sizeof *plan->effect + sizeof *plan->reason) +
                   (plan->m ? f->masses * sizeof *plan->m : 0) + msri_mesh_bytes(mesh) +
                   (plan->graph ? plan->graph->bytes : 0) +
                   (plan->contact.drift ? f->width * f->height / 8 : 0) +
@@ -61,7 +62,7 @@ static msr_status decide(msr_plan *plan, const msr_scene *scene, const msr_view 
                          const msr_plan_options *options, msr_error *err) {
   const bool automatic = !options->integrator && options->substeps == 0;
   msr_status status = msri_plan_call_for_effects(plan, scene, start, err);
-  plan->cares = automatic && msri_plan_can_leap(plan);
+  plan->cares = automatic && !msri_plan_cannot_leap(plan);
   if (plan->cares) plan->figures.care = &msr_integrator_energy_momentum;
   plan->careful = plan->cares && msri_plan_crushes(plan, start);
   if (status == MSR_OK) status = msri_plan_choose_step(plan, start, options->substeps, err);
@@ -98,8 +99,10 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan
   free(q);
   if (status == MSR_OK && msri_plan_sweeps(plan))
     status = msri_objects_create(plan->grid->picture, plan->neighbours, &plan->objects, err);
-  if (status == MSR_OK) count_memory(plan);
-  return status;
+  if (status != MSR_OK) return status;
+  msri_plan_complete_effects(plan, &(msri_asked){options->integrator, options->substeps > 0});
+  count_memory(plan);
+  return MSR_OK;
 }
 
 static msr_status check_threads(unsigned threads, msr_error *err) {
@@ -126,6 +129,7 @@ msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *optio
   if (status != MSR_OK) return status;
   msr_plan *made = msri_alloc(1, sizeof *made, "a plan", err);
   if (!made) return MSR_ENOMEM;
+  made->timed = options->timed;
   made->figures = (msr_plan_figures){.integrator = integrator,
                                      .iterations = scene->conf.iterations,
                                      .images = scene->conf.images,

@@ -37,6 +37,17 @@ extern const double msri_leap_least; /* cost of the cheapest leap */
 extern const double msri_leap_share; /* of the cost of all substeps that may be spent in vain */
 extern const double msri_leap_reach; /* how far what meets something may be from it [px] */
 
+/* Numbers of effects; n_effects where they are off. */
+typedef struct msri_rows {
+  size_t contact; /* that the time of all contacts goes to */
+  size_t integrator, leaps, guard, care;
+} msri_rows;
+
+/* What was asked for that says which steps are taken. */
+typedef struct msri_asked {
+  bool integrator, substeps;
+} msri_asked;
+
 struct msr_plan {
   msr_plan_figures figures;
   size_t n_picture;
@@ -63,7 +74,9 @@ struct msr_plan {
   msri_discs *discs;    /* NULL: masses don't collide with each other */
   msr_effect *effect;   /* [n_effects]; the first n_terms are the terms */
   char (*reason)[MSR_MESSAGE_SIZE]; /* of the effects */
-  size_t n_effects;
+  size_t n_effects, n_contacts;     /* contacts that are on come after the terms */
+  msri_rows row;
+  bool timed; /* states measure the time of effects */
   msri_leaping leaping;
   double safe_share; /* of the stable step, that steps are no larger than */
   bool conserves;    /* nothing gives energy or takes it */
@@ -132,6 +145,30 @@ static inline double msri_plan_time(const msr_plan_figures *f, uint64_t iteratio
 msr_status msri_plan_call_for_effects(msr_plan *plan, const msr_scene *scene, const msr_view *start,
                                       msr_error *err);
 
+/* Completes the effects, once the steps are chosen, by what steps, by what is off, and by what each
+ * takes. */
+void msri_plan_complete_effects(msr_plan *plan, const msri_asked *asked);
+
+/* Fills the costs of all effects that are on. */
+void msri_plan_count_costs(msr_plan *plan);
+
+/* Calls of a force in a step of so many evaluations. Of flows there are two or, where a composition
+ * of Verlet's keeps its order in air, two to an evaluation. */
+static inline double msri_force_calls(const msr_force *force, const msr_integrator *integrator,
+                                      double evaluations) {
+  if (!force->uses_velocity || !integrator->splits) return evaluations;
+  return integrator->damped_order == 0 ? 2 * evaluations : 2;
+}
+
+/* Steps between two looks of the guard: at speeds, at all energies. */
+enum { MSRI_GLANCE = 16, MSRI_LOOK = 256 };
+
+/* Iterations between two looks with care: 64; where they are one or two steps, 256 steps. */
+static inline uint64_t msri_care_period(const msr_plan_figures *f) {
+  enum { ITERATIONS = 64, STEPS = 256 };
+  return f->substeps < 3 ? STEPS / f->substeps : ITERATIONS;
+}
+
 /* Keeps what a program's masses begin with. MSR_ENOMEM. */
 msr_status msri_plan_keep_start(msr_plan *plan, const msr_scene *scene, msr_error *err);
 
@@ -170,8 +207,8 @@ msr_status msri_plan_choose_step(msr_plan *plan, const msr_view *start, uint64_t
 /* Size of the acceleration by gravity [px/s^2]. */
 double msri_plan_gravity(const msr_plan *plan);
 
-/* Can implicit steps be taken, past whatever is in the way? */
-bool msri_plan_can_leap(const msr_plan *plan);
+/* Why implicit steps can't be taken past whatever is in the way; NULL: they can. */
+const char *msri_plan_cannot_leap(const msr_plan *plan);
 
 /* Lets the plan leap if that may cost less than its substeps, and says so. */
 msr_status msri_plan_choose_leaps(msr_plan *plan, msr_error *err);

@@ -20,7 +20,7 @@ typedef struct room {
 /* Where each array lies after the block's first aligned byte; `end` is after the last. */
 typedef struct layout {
   room room;
-  size_t q, v, work, before, owed, ahead, middle, drive, discs, scratch, calls, kept, end;
+  size_t q, v, work, before, owed, ahead, middle, drive, discs, scratch, calls, seconds, kept, end;
 } layout;
 
 static size_t reserve(size_t *end, size_t bytes) {
@@ -68,7 +68,8 @@ static layout lay_out(const msr_plan *plan) {
   l.discs = reserve(&end, plan->discs ? msri_discs_room(plan->discs) : 0);
   l.scratch = reserve(&end, plan->scratch_bytes);
   l.kept = reserve(&end, plan->cares ? 2 * vector : 0);
-  l.calls = reserve(&end, plan->n_effects * sizeof(uint64_t));
+  l.calls = reserve(&end, (plan->n_effects + 1) * sizeof(uint64_t));
+  l.seconds = reserve(&end, plan->timed ? (plan->n_effects + 1) * sizeof(double) : 0);
   l.end = end;
   return l;
 }
@@ -110,13 +111,14 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .drive = (void *)(arrays + l.drive),
       .discs = arrays + l.discs,
       .scratch = arrays + l.scratch,
-      .calls = (void *)(arrays + l.calls),
+      .meter = {.calls = (void *)(arrays + l.calls),
+                .seconds = plan->timed ? (void *)(arrays + l.seconds) : NULL,
+                .effect = plan->n_effects},
   };
   const size_t n = plan->figures.masses;
   msri_plan_start(plan, made->q, made->q + n, made->v, made->v + n);
   place_room(made, &l.room, plan->graph, arrays);
-  msr_status status =
-      msri_plan_sweeps(plan) ? msri_sweep_create(plan, &made->sweep, err) : MSR_OK;
+  msr_status status = msri_plan_sweeps(plan) ? msri_sweep_create(plan, &made->sweep, err) : MSR_OK;
   if (status == MSR_OK) status = open_integrator(made, err);
   if (status == MSR_OK) {
     *state = made;
@@ -239,7 +241,12 @@ msr_work msr_state_work(const msr_state *state) {
 }
 
 uint64_t msr_state_calls(const msr_state *state, size_t effect) {
-  return effect < state->plan->n_effects ? state->calls[effect] : 0;
+  return effect < state->plan->n_effects ? state->meter.calls[effect] : 0;
+}
+
+double msr_state_seconds(const msr_state *state, size_t effect) {
+  const msri_meter *meter = &state->meter;
+  return meter->seconds && effect < state->plan->n_effects ? meter->seconds[effect] : 0;
 }
 
 /* ---- Energy */

@@ -2,6 +2,7 @@
 #ifndef MSRI_STATE_H
 #define MSRI_STATE_H
 
+#include "plan/meter.h"
 #include "plan/plan.h"
 #include "solvers/stiffness.h"
 #include "sweep/sweep.h"
@@ -79,7 +80,7 @@ struct msr_state {
   msri_sweep *sweep;        /* NULL: integrators step it */
   void *discs;              /* memory of plan->discs, if there are */
   char *scratch;            /* [plan->scratch_bytes] */
-  uint64_t *calls;          /* [plan->n_effects] */
+  msri_meter meter;         /* [plan->n_effects], and one for what is no effect */
   msri_stiffness stiffness; /* if plan->graph */
 };
 

@@ -3,7 +3,7 @@
  * A lattice that is crushed has masses that pass through each other; a spring's force turns round
  * there within a step, and every substep gains or loses some energy, which heats, the more the
  * hotter it is. Steps that are small enough would be too small: half of the error takes half of the
- * step. So a state is kept every PERIOD iterations; once there is more energy than the scene had to
+ * step. So a state is kept every 64 iterations; once there is more energy than the scene had to
  * give, by MOST, the state goes back to what was kept, and goes on by steps of energy-momentum,
  * which keep the energy at any step, through elastic impacts too. They cost tens of times more than
  * those of Verlet: only scenes that call for them have them.
@@ -13,8 +13,6 @@
 #include "run/care.h"
 
 #include "run/guard.h"
-
-enum { PERIOD = 64 }; /* of iterations; where these are one or two steps, 256 steps */
 
 static const double most = 0.02; /* of the energy that the scene had to give */
 
@@ -44,9 +42,8 @@ static msr_status take_care(msr_state *state, msr_error *err) {
   return msri_guard_resume(state, err);
 }
 
-msr_status msri_care_begin(msr_state *state, msr_error *err) {
+static msr_status begin(msr_state *state, msr_error *err) {
   msri_care *care = &state->care;
-  if (!state->plan->cares) return MSR_OK;
   if (care->on) return msri_state_make_room(state, err);
   if (care->begun) return MSR_OK;
   care->lost = 0;
@@ -56,32 +53,43 @@ msr_status msri_care_begin(msr_state *state, msr_error *err) {
   return status;
 }
 
-/* Iterations between two looks. */
-static uint64_t period_of(const msr_state *state) {
-  const uint64_t substeps = state->plan->figures.substeps;
-  return substeps < 3 ? 4 * PERIOD / substeps : PERIOD;
+msr_status msri_care_begin(msr_state *state, msr_error *err) {
+  if (!state->plan->cares) return MSR_OK;
+  const size_t was = msri_meter_turn(&state->meter, state->plan->row.care);
+  const msr_status status = begin(state, err);
+  msri_meter_turn(&state->meter, was);
+  return status;
 }
 
 static bool looks(const msr_state *state) {
-  return state->substep == 0 && state->iteration % period_of(state) == 0;
+  return state->substep == 0 && state->iteration % msri_care_period(&state->plan->figures) == 0;
 }
 
 uint64_t msri_care_patience(const msr_state *state) {
   if (!state->plan->cares) return UINT64_MAX;
-  const uint64_t period = period_of(state), substeps = state->plan->figures.substeps;
-  return (period - state->iteration % period) * substeps - state->substep;
+  const msr_plan_figures *f = &state->plan->figures;
+  const uint64_t period = msri_care_period(f);
+  return (period - state->iteration % period) * f->substeps - state->substep;
 }
 
-msr_status msri_care_watch(msr_state *state, bool went_wrong, bool *turned, msr_error *err) {
-  msri_care *care = &state->care;
-  *turned = false;
-  if (!state->plan->cares || care->on || !care->begun) return MSR_OK;
-  if (!went_wrong && !looks(state)) return MSR_OK;
-  if (!went_wrong && msri_guard_gain(state, &care->lost) <= most) {
+/* Keeps the state, or turns to steps with care. */
+static msr_status look(msr_state *state, bool went_wrong, bool *turned, msr_error *err) {
+  if (!went_wrong && msri_guard_gain(state, &state->care.lost) <= most) {
     keep(state);
     return MSR_OK;
   }
   const msr_status status = take_care(state, err);
   *turned = status == MSR_OK;
+  return status;
+}
+
+msr_status msri_care_watch(msr_state *state, bool went_wrong, bool *turned, msr_error *err) {
+  const msri_care *care = &state->care;
+  *turned = false;
+  if (!state->plan->cares || care->on || !care->begun) return MSR_OK;
+  if (!went_wrong && !looks(state)) return MSR_OK;
+  const size_t was = msri_meter_enter(&state->meter, state->plan->row.care);
+  const msr_status status = look(state, went_wrong, turned, err);
+  msri_meter_turn(&state->meter, was);
   return status;
 }

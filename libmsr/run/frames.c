@@ -1,5 +1,6 @@
 /* frames.c - the sink that draws every frame as a binary PPM: one file each in a directory, or one
  * after the other on standard output. */
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "base/pipe.h"
@@ -16,6 +17,7 @@ enum { NAME_SIZE = 32 }; /* of "/frame-000000.ppm" */
 
 typedef struct frames {
   msr_renderer *renderer;
+  double drawing;   /* time that it took so far [s] */
   msri_file stream; /* of a run to standard output */
   size_t directory; /* length of the directory's name; 0: to standard output */
   char path[];      /* directory, then the frame's name */
@@ -74,8 +76,10 @@ static msr_status clear_frames(frames *f, bool overwrite, msr_error *err) {
 
 static msr_status take(void *self, const msr_state *state, uint64_t frame, msr_error *err) {
   (void)frame, (void)err;
-  const frames *f = self;
+  frames *f = self;
+  const double start = msri_clock_now();
   msri_renderer_take(f->renderer, state);
+  f->drawing += msri_clock_now() - start;
   return MSR_OK;
 }
 
@@ -86,11 +90,11 @@ static msr_status create_file(const char *path, msri_file *file, msr_error *err)
   return status;
 }
 
-static msr_status draw_file(const frames *f, msr_error *err) {
+static msr_status draw_file(frames *f, msr_error *err) {
   msri_file file;
   msr_status status = create_file(f->path, &file, err);
   if (status != MSR_OK) return status;
-  status = msri_renderer_write(f->renderer, &file, err);
+  status = msri_renderer_write(f->renderer, &file, &f->drawing, err);
   if (status == MSR_OK) return msri_file_commit(&file, err);
   msri_file_abandon(&file);
   return status;
@@ -98,7 +102,7 @@ static msr_status draw_file(const frames *f, msr_error *err) {
 
 static msr_status draw(void *self, uint64_t frame, msr_error *err) {
   frames *f = self;
-  if (f->directory == 0) return msri_renderer_write(f->renderer, &f->stream, err);
+  if (f->directory == 0) return msri_renderer_write(f->renderer, &f->stream, &f->drawing, err);
   msri_format(f->path + f->directory, NAME_SIZE, "/frame-%06llu.ppm", (unsigned long long)frame);
   return draw_file(f, err);
 }
@@ -140,3 +144,5 @@ msr_status msr_frames_open(const msr_plan *plan, const char *dir, const msr_styl
   free(f);
   return status;
 }
+
+double msr_frames_drawing(const msr_sink *sink) { return ((const frames *)sink->self)->drawing; }

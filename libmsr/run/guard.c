@@ -30,8 +30,6 @@ static const double rounding = 1e-6; /* [px] */
 /* Heavy masses beside stiff springs of light ones would make it infinite. */
 static const double largest = 1e290;
 
-enum { GLANCE = 16, LOOK = 256 }; /* steps between two */
-
 typedef struct energies {
   double moving;         /* kinetic and of springs */
   double gravity, outer; /* potentials of gravity, and of all others but springs */
@@ -76,11 +74,13 @@ static msr_status find_drive(msr_state *state) {
 
 msr_status msri_guard_follow(msr_state *state, double h) {
   if (!state->plan->driven) return MSR_OK;
+  const size_t was = msri_meter_enter(&state->meter, state->plan->row.guard);
   const bool follows = state->plan->followed;
   const double told = state->guard.power, before = follows ? power_along(state) : 0;
   const msr_status status = find_drive(state);
   const double after = follows ? power_along(state) : 0;
   state->guard.work += h * (msri_max(told, state->guard.power) + msri_max(before, after));
+  msri_meter_turn(&state->meter, was);
   return status;
 }
 
@@ -141,8 +141,7 @@ msr_status msri_guard_resume(msr_state *state, msr_error *err) {
   return tell(state, status, err);
 }
 
-msr_status msri_guard_begin(msr_state *state, msr_error *err) {
-  if (state->guard.begun) return msri_guard_resume(state, err);
+static msr_status begin(msr_state *state, msr_error *err) {
   const msr_plan_figures *figures = &state->plan->figures;
   const msr_view view = msr_state_view(state);
   double kick;
@@ -160,6 +159,13 @@ msr_status msri_guard_begin(msr_state *state, msr_error *err) {
       .outer = start.outer,
   };
   return tell(state, status, err);
+}
+
+msr_status msri_guard_begin(msr_state *state, msr_error *err) {
+  const size_t was = msri_meter_turn(&state->meter, state->plan->row.guard);
+  const msr_status status = state->guard.begun ? msri_guard_resume(state, err) : begin(state, err);
+  msri_meter_turn(&state->meter, was);
+  return status;
 }
 
 /* ---- The verdict */
@@ -208,7 +214,7 @@ double msri_guard_gain(msr_state *state, double *lost) {
   return gain <= 0 ? 0 : gain / b.given;
 }
 
-msr_status msr_state_check(msr_state *state, msr_error *err) {
+static msr_status check(msr_state *state, msr_error *err) {
   state->failed = NULL;
   const msr_status status = msri_guard_begin(state, err);
   if (status != MSR_OK) return status;
@@ -220,26 +226,34 @@ msr_status msr_state_check(msr_state *state, msr_error *err) {
   return msri_guard_refuse(state, finite ? 1 + b.gain / b.given : (double)NAN, err);
 }
 
+msr_status msr_state_check(msr_state *state, msr_error *err) {
+  const size_t was = msri_meter_enter(&state->meter, state->plan->row.guard);
+  const msr_status status = check(state, err);
+  msri_meter_turn(&state->meter, was);
+  return status;
+}
+
 /* Is there more than there may be, as far as the last look knew, or no number? */
-static bool runs(const msr_state *state) {
+static bool runs(msr_state *state) {
   const msr_plan *plan = state->plan;
-  const size_t n = plan->figures.masses;
+  const size_t n = plan->figures.masses, was = msri_meter_enter(&state->meter, plan->row.guard);
   const double *v = state->v;
   const double twice = plan->m
                            ? msri_sum_squares(n, plan->m, v) + msri_sum_squares(n, plan->m, v + n)
                            : plan->uniform_mass * msri_sum_squares(2 * n, NULL, v);
+  msri_meter_turn(&state->meter, was);
   return !(twice / 2 <= state->guard.most);
 }
 
 uint64_t msri_guard_patience(const msr_state *state) {
   const uint64_t since = msri_state_steps(state) - state->guard.looked;
-  return since > LOOK ? 1 : LOOK + 1 - since;
+  return since > MSRI_LOOK ? 1 : MSRI_LOOK + 1 - since;
 }
 
 msr_status msri_guard_watch(msr_state *state, bool fast, msr_error *err) {
   const uint64_t steps = msri_state_steps(state);
-  const bool late = fast || steps - state->guard.looked > LOOK;
-  return late || (steps % GLANCE == 0 && runs(state)) ? msr_state_check(state, err) : MSR_OK;
+  const bool late = fast || steps - state->guard.looked > MSRI_LOOK;
+  return late || (steps % MSRI_GLANCE == 0 && runs(state)) ? msr_state_check(state, err) : MSR_OK;
 }
 
 double msr_state_energy_gain(const msr_state *state) { return state->guard.gain; }

@@ -41,6 +41,8 @@ static msr_interval interval_of(const course *c) {
 static msr_status try(course *c, const msr_interval *interval, double reach, bool *made) {
   msr_state *state = c->state;
   const msr_integrator *method = &msr_integrator_energy_momentum;
+  const msri_rows *row = &state->plan->row;
+  const size_t was = msri_meter_enter(&state->meter, state->care.on ? row->care : row->leaps);
   msri_state_keep(state, state->leap.before);
   state->effort = (msri_effort){.limited = true, .limit = c->credit, .reach = reach};
   msr_workspace work = {.vector = state->leap.vector};
@@ -50,8 +52,8 @@ static msr_status try(course *c, const msr_interval *interval, double reach, boo
   state->leap.spent += state->effort.spent;
   state->fresh = false;
   *made = status == MSR_OK;
-  if (*made) return MSR_OK;
-  msri_state_put_back(state, state->leap.before);
+  if (!*made) msri_state_put_back(state, state->leap.before);
+  msri_meter_turn(&state->meter, was);
   return status == MSR_EUNSTABLE && !state->failed ? MSR_OK : status;
 }
 
@@ -101,10 +103,13 @@ static bool pays(const course *c) {
 /* Would springs buckle many times over, in a stretch of h? Stiff ones that vibrate do: an implicit
  * step has to follow them, and costs more than all substeps (measured: leaps pay up to 4, and at 20
  * they don't, whatever the stiffness). */
-static bool vibrates(const msr_state *state, double h) {
+static bool vibrates(msr_state *state, double h) {
   static const double most = 8;
+  const size_t was = msri_meter_turn(&state->meter, state->plan->row.leaps);
   const msr_view view = msr_state_view(state);
-  return !(h * h * msri_mesh_buckling(&view) < most);
+  const double buckling = msri_mesh_buckling(&view);
+  msri_meter_turn(&state->meter, was);
+  return !(h * h * buckling < most);
 }
 
 msr_status msri_leap(msr_state *state, const msr_system *system, const msri_poll *poll) {
@@ -115,7 +120,7 @@ msr_status msri_leap(msr_state *state, const msr_system *system, const msri_poll
   const double credit = msri_leap_share * plan->substep * (double)stretch;
   course c = {state, system, plan, stretch, state->care.on ? (double)INFINITY : credit};
   if (!state->care.on && vibrates(state, (double)stretch * state->plan->figures.h)) return MSR_OK;
-  msr_status status = poll->call ? poll->call(poll->data, state) : MSR_OK;
+  msr_status status = msri_poll_call(poll, state);
   while (state->substep < end && status == MSR_OK) {
     bool made;
     c.length = c.length < end - state->substep ? c.length : end - state->substep;

@@ -4,6 +4,8 @@
  * pixel that it is in, so that the state at the start gives the scene's own picture. */
 #include "run/renderer.h"
 
+#include "base/clock.h"
+
 #include "base/pixel.h"
 #include "formats/ppm.h"
 #include "plan/state.h"
@@ -181,17 +183,22 @@ const msr_picture *msr_renderer_draw(msr_renderer *renderer, const msr_state *st
 
 /* Some rows at a time, from the fastest cache. All are moved whatever happens, so that the canvas
  * is white. */
-msr_status msri_renderer_write(msr_renderer *renderer, msri_file *file, msr_error *err) {
+msr_status msri_renderer_write(msr_renderer *renderer, msri_file *file, double *drawing,
+                               msr_error *err) {
   enum { AT_ONCE = 1 << 16 };
   const size_t line = 3 * renderer->canvas.width, height = renderer->canvas.height;
   const size_t most = line < AT_ONCE ? AT_ONCE / line : 1;
   unsigned char *rgb = renderer->frame->rgb;
   char header[MSRI_PPM_HEADER_SIZE];
+  double start = msri_clock_now();
   paint(renderer);
+  *drawing += msri_clock_now() - start;
   msr_status status = msri_file_write(file, header, msri_ppm_header(renderer->frame, header), err);
   for (size_t row = 0; row < height; row += most) {
     const size_t count = height - row < most ? height - row : most;
+    start = msri_clock_now();
     msri_canvas_move(&renderer->canvas, row, count, rgb);
+    *drawing += msri_clock_now() - start;
     if (status == MSR_OK) status = msri_file_write(file, rgb, count * line, err);
   }
   return status;

@@ -7,7 +7,9 @@
 /* Takes from the state where its masses are. */
 void msri_renderer_take(msr_renderer *renderer, const msr_state *state);
 
-/* Draws what was taken, as P6, into a file. MSR_EIO. */
-msr_status msri_renderer_write(msr_renderer *renderer, msri_file *file, msr_error *err);
+/* Draws what was taken, as P6, into a file; the time that drawing took, without writing, is added
+ * to `drawing` [s]. MSR_EIO. */
+msr_status msri_renderer_write(msr_renderer *renderer, msri_file *file, double *drawing,
+                               msr_error *err);
 
 #endif

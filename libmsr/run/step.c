@@ -67,6 +67,7 @@ msr_status msri_step_once(msr_state *state, const msr_system *system, const msr_
   if (status != MSR_OK) return status;
   if (!integrator->adaptive) state->work.steps++;
   state->end = interval->end;
+  state->meter.calls[state->plan->row.integrator]++;
   return integrator->step(integrator, system, interval, state->q, state->v, &state->work, err);
 }
 
@@ -92,7 +93,7 @@ static msr_status substep(msr_state *state, const msr_system *system, const msri
   const msr_plan_figures *f = &state->plan->figures;
   const msr_interval interval = {msri_state_time(state), f->h,
                                  msri_plan_time(f, state->iteration, state->substep + 1)};
-  msr_status status = poll->call ? poll->call(poll->data, state) : MSR_OK;
+  msr_status status = msri_poll_call(poll, state);
   if (status == MSR_OK) status = step(state, system, &interval, err);
   if (status != MSR_OK) return status;
   state->substep++;
@@ -144,12 +145,13 @@ static msr_status sweep(msr_state *state, uint64_t end, const msri_poll *poll, b
   const size_t n = state->plan->figures.masses;
   const double most = sqrt(2 * state->guard.most / state->plan->uniform_mass);
   const msri_swept swept = {state->q,     state->q + n,   state->v,
-                            state->v + n, state->scratch, state->calls};
+                            state->v + n, state->scratch, state->meter.calls};
   const msri_course way = {state->plan, state->iteration, state->substep, steps_to(state, end)};
   msr_status status = poll->call ? poll->call(poll->data, state) : MSR_OK;
   if (status != MSR_OK) return status;
   const msri_progress progress = msri_sweep_run(state->sweep, &swept, way, most);
   state->work.steps += progress.steps;
+  state->meter.calls[state->plan->row.integrator] += progress.steps;
   state->evaluations += progress.evaluations;
   *fast = progress.fast;
   return follow(state, progress.steps);
@@ -168,7 +170,8 @@ static msr_status explain(const msr_state *state, msr_status status, const msr_e
                    told ? said->message : msr_status_text(status));
 }
 
-msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *poll, msr_error *err) {
+static msr_status advance_by(msr_state *state, uint64_t iterations, const msri_poll *poll,
+                             msr_error *err) {
   const uint64_t left = UINT64_MAX - state->iteration;
   const uint64_t end = state->iteration + (iterations < left ? iterations : left);
   state->failed = NULL;
@@ -187,6 +190,14 @@ msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *pol
     if (status == MSR_OK && !turned && verdict != MSR_OK)
       return msri_fail(err, verdict, "%s", said.message);
   }
+  return status;
+}
+
+/* What no effect says it's its own is the integrator's. */
+msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *poll, msr_error *err) {
+  const size_t was = msri_meter_turn(&state->meter, state->plan->row.integrator);
+  const msr_status status = advance_by(state, iterations, poll, err);
+  msri_meter_turn(&state->meter, was);
   return status;
 }
 

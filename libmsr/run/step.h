@@ -10,6 +10,15 @@ typedef struct msri_poll {
   void *data;
 } msri_poll;
 
+/* Calls it; the time that it takes is nobody's. */
+static inline msr_status msri_poll_call(const msri_poll *poll, msr_state *state) {
+  if (!poll->call) return MSR_OK;
+  const size_t was = msri_meter_turn(&state->meter, state->plan->n_effects);
+  const msr_status status = poll->call(poll->data, state);
+  msri_meter_turn(&state->meter, was);
+  return status;
+}
+
 /* As msr_state_step. What poll returns, other than MSR_OK, ends it and comes back unchanged. */
 msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *poll, msr_error *err);
 

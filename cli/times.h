@@ -1,0 +1,11 @@
+/* times.h - how long each effect of a run took, and how often it was called. */
+#ifndef CLI_TIMES_H
+#define CLI_TIMES_H
+
+#include "outputs.h"
+
+/* A line per effect that is on, one for all the rest, and their sum, which is `seconds`. */
+void times_print(FILE *out, const effect_list *list, const msr_state *state, const outputs *written,
+                 double seconds);
+
+#endif
