@@ -53,7 +53,7 @@ HARD_SRC := $(wildcard tests/stability/*.c)
 BESIDE_SRC := $(wildcard tests/bench/stability/*.c tests/bench/stability/*.cc)
 SOURCES  := $(LIB_SRC) $(CLI_SRC) $(TEST_SRC) $(FUZZ_SRC) $(BITS_SRC) $(HARD_SRC) $(BENCH_SRC) \
             $(BESIDE_SRC) $(EX_SRC) $(wildcard tests/bench/effects/*.c)
-HEADERS  := $(wildcard include/*.h libmsr/*/*.h cli/*.h tests/*.h tests/fuzz/*.h \
+HEADERS  := $(wildcard include/*.h libmsr/*/*.h libmsr/*/*.inc cli/*.h tests/*.h tests/fuzz/*.h \
             tests/stability/*.h tests/bench/*.h tests/bench/stability/*.h)
 DOCS     := $(wildcard README.md LICENSE CHANGELOG.md docs/*.md docs/images/*.png include/*.h \
              examples/*.md examples/*.c examples/scenes/*)

@@ -19,20 +19,20 @@ typedef struct msri_place {
 
 #define LANES    1
 #define NAMED(x) x##_1
-#include "forces/lattice_kernel.h"
+#include "forces/lattice_kernel.inc"
 
 #if MSRI_WIDE
 #define LANES    2
 #define NAMED(x) x##_2
-#include "forces/lattice_kernel.h"
+#include "forces/lattice_kernel.inc"
 
 #define LANES    4
 #define NAMED(x) x##_4
-#include "forces/lattice_kernel.h"
+#include "forces/lattice_kernel.inc"
 
 #define LANES    8
 #define NAMED(x) x##_8
-#include "forces/lattice_kernel.h"
+#include "forces/lattice_kernel.inc"
 #endif
 
 /* ---- By width */
