@@ -51,10 +51,11 @@ BITS_SRC := $(wildcard tests/bits/*.c)
 BENCH_SRC := $(wildcard tests/bench/*.c tests/bench/*.cc)
 HARD_SRC := $(wildcard tests/stability/*.c)
 BESIDE_SRC := $(wildcard tests/bench/stability/*.c tests/bench/stability/*.cc)
+SPEED_SRC := $(wildcard tests/bench/speed/*.c)
 SOURCES  := $(LIB_SRC) $(CLI_SRC) $(TEST_SRC) $(FUZZ_SRC) $(BITS_SRC) $(HARD_SRC) $(BENCH_SRC) \
-            $(BESIDE_SRC) $(EX_SRC)
+            $(BESIDE_SRC) $(SPEED_SRC) $(EX_SRC)
 HEADERS  := $(wildcard include/*.h libmsr/*/*.h cli/*.h tests/*.h tests/fuzz/*.h \
-            tests/stability/*.h tests/bench/*.h tests/bench/stability/*.h)
+            tests/stability/*.h tests/bench/*.h tests/bench/stability/*.h tests/bench/speed/*.h)
 DOCS     := $(wildcard README.md LICENSE CHANGELOG.md docs/*.md docs/images/*.png include/*.h \
              examples/*.md examples/*.c examples/scenes/*)
 MAN      := $(wildcard docs/*.1)
@@ -116,7 +117,7 @@ $(EXAMPLES): $(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(BUILD)/libmsr.a
 
 ## deps: installs what is missing; with other goals, only what they need (make deps demo)
 deps:
-	@CC='$(CC)' PKG_CONFIG='$(PKG_CONFIG)' sh tests/mk-deps.sh $(filter-out deps,$(MAKECMDGOALS))
+	@CC='$(CC)' PKG_CONFIG='$(PKG_CONFIG)' BUILD='$(BUILD)' sh tests/mk-deps.sh $(filter-out deps,$(MAKECMDGOALS))
 
 ## demo: frames of a real scene in build/demo/
 SCENE = examples/scenes/assignment
@@ -271,6 +272,22 @@ $(BESIDE): $(call object,$(BESIDE_SRC) tests/bench/fail.c) $(BUILD)/libmsr.a
 bench-stability: $(BESIDE)
 	@$(BESIDE)
 
+SPEED = $(BUILD)/bench/speed
+
+# The assignment's program is compiled as a student does.
+$(BUILD)/obj/tests/bench/speed/assignment.o: private CFLAGS = -O2
+$(BUILD)/obj/tests/bench/speed/assignment.o: private ARITHMETIC =
+
+$(SPEED): $(call object,$(SPEED_SRC) tests/bench/fail.c) $(BUILD)/libmsr.a
+	@mkdir -p $(@D)
+	$(call show,LINK)$(LINK) -pthread -o $@ $^ $(GSL_LIBS)
+
+## bench TABLES=blocks: speed, beside others and the machine's limit; all (the default) take minutes
+TABLES =
+bench: $(SPEED)
+	@mkdir -p $(BUILD)/bench/peers
+	@$(SPEED) $(BUILD)/bench/peers $(TABLES)
+
 # ---- Report --------------------------------------------------------------------------------------
 
 STUDIES = turn assignment pendulum
@@ -345,7 +362,7 @@ help:
 
 .PHONY: all examples everything deps demo test check check-gcc check-clang check-san \
         check-valgrind check-tidy check-cppcheck check-format format coverage fuzz run-fuzzers \
-        stability mutations bench-accuracy bench-guard bench-stability report figures \
+        stability mutations bench bench-accuracy bench-guard bench-stability report figures \
         install uninstall clean help
 FORCE:
 .DELETE_ON_ERROR:
