@@ -91,7 +91,7 @@ $(BUILD)/flags $(BUILD)/sources: FORCE | $(FIRST)
 $(BUILD)/obj/libmsr/%.o $(BUILD)/obj/tests/%.o: INTERNAL = -Ilibmsr $(GSL_CFLAGS)
 $(BUILD)/obj/%.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(call show,CC)$(COMPILE) $(INTERNAL) $(ENTRY) -MMD -MP -c $< -o $@
+	$(call show,CC)$(COMPILE) $(INTERNAL) $(OWN) -MMD -MP -c $< -o $@
 
 $(BUILD)/libmsr.a: $(LIB_OBJ) $(BUILD)/sources
 	@rm -f $@
@@ -144,7 +144,7 @@ $(BUILD)/tests/test_hard: $(call object,$(HARD_SRC))
 # test_corpus runs every fuzzer on its corpus: there the entry of fuzz_x.c is called fuzz_x.
 $(BUILD)/tests/test_corpus: $(call object,$(FUZZ_SRC))
 rename = -DLLVMFuzzerTestOneInput=$(*F)
-$(BUILD)/obj/tests/fuzz/%.o: ENTRY = $(if $(findstring fuzzer,$(SAN)),,$(rename))
+$(BUILD)/obj/tests/fuzz/%.o: OWN = $(if $(findstring fuzzer,$(SAN)),,$(rename))
 
 LOCALE = $(BUILD)/locale/fr_FR.UTF-8
 $(LOCALE): | $(FIRST)
@@ -274,9 +274,10 @@ bench-stability: $(BESIDE)
 
 SPEED = $(BUILD)/bench/speed
 
-# The assignment's program is compiled as a student does.
-$(BUILD)/obj/tests/bench/speed/assignment.o: private CFLAGS = -O2
-$(BUILD)/obj/tests/bench/speed/assignment.o: private ARITHMETIC =
+# The assignment's program is compiled as a student does; the kernel's vectors are arguments of
+# inlined functions only.
+$(BUILD)/obj/tests/bench/speed/assignment.o: OWN = -O2 -fmath-errno
+$(BUILD)/obj/tests/bench/speed/limit_kernel.o: OWN = -Wno-psabi
 
 $(SPEED): $(call object,$(SPEED_SRC) tests/bench/fail.c) $(BUILD)/libmsr.a
 	@mkdir -p $(@D)

@@ -10,9 +10,14 @@ static const double sample = 0.02; /* [s] */
 enum { SIDES = sizeof sides / sizeof *sides, COLUMNS = 5 };
 
 static const struct {
+  const char *title;
   const contestant *who;
   int threads;
-} columns[COLUMNS] = {{&library, 1}, {&library, 2}, {&limit_1, 1}, {&limit_16, 1}, {&limit_16, 2}};
+} columns[COLUMNS] = {{"libmsr, 1 thread", &library, 1},
+                      {"libmsr, 2 threads", &library, 2},
+                      {"limit, 1 step a pass", &limit_1, 1},
+                      {"limit, 16 a pass", &limit_16, 1},
+                      {"the same, 2 threads", &limit_16, 2}};
 
 typedef struct cell {
   entry e;
@@ -62,8 +67,7 @@ static void print_all(cell (*x)[COLUMNS]) {
   printf("\n== Growth: ns per spring and step, blocks\n");
   print_caches();
   printf("%9s %9s", "masses", "KB");
-  for (size_t k = 0; k < COLUMNS; k++)
-    printf("  %-18.18s %d", columns[k].who->name, columns[k].threads);
+  for (size_t k = 0; k < COLUMNS; k++) printf("  %-20s", columns[k].title);
   printf("\n");
   for (size_t i = 0; i < SIDES; i++) {
     printf("%9zu %9.0f", x[i][0].masses, x[i][0].e.bytes / 1024);

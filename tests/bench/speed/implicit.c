@@ -46,8 +46,10 @@ static void print_steps(const work *w, const msr_integrator *method, double K, d
 void implicit_table(void) {
   work w = work_drawn("block", SIDE, draw_block);
   const double verlet = verlet_step(&w);
-  printf("\n== Implicit steps, block of %zu masses, one thread: the first and the second\n", w.n);
-  printf("%-16s %8s %10s %9s %10s %9s %9s %9s %9s\n", "", "K", "iterations", "s", "iterations", "s",
+  printf("\n== Implicit steps, block of %zu masses, one thread: evaluations and seconds of the "
+         "first and of the second\n",
+         w.n);
+  printf("%-16s %8s %10s %9s %10s %9s %9s %9s %9s\n", "", "K", "evals", "s", "evals", "s",
          "Verlet's", "s", "ratio");
   for (int m = 0; m < METHODS; m++)
     for (size_t i = 0; i < sizeof stiffnesses / sizeof *stiffnesses; i++)

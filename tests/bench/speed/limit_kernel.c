@@ -5,9 +5,6 @@
 
 #include <string.h>
 
-/* Vectors are arguments of functions that are always inlined only. */
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 #define INLINE static inline __attribute__((always_inline))
 
 enum { LANES = 8 };

@@ -32,8 +32,9 @@ spread spread_of(double *sample, size_t n) {
 static char bars[64][160];
 static size_t n_bars;
 
-static void add_bar(bool passed, double value, const char *relation, double bar, const char *what,
-                    va_list args) {
+__attribute__((format(printf, 5, 0))) static void add_bar(bool passed, double value,
+                                                          const char *relation, double bar,
+                                                          const char *what, va_list args) {
   char text[96];
   vsnprintf(text, sizeof text, what, args);
   if (n_bars < sizeof bars / sizeof *bars)
