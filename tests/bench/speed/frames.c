@@ -95,7 +95,10 @@ static void print_film(const char *name, size_t bytes, double (*x)[ROUNDS]) {
   }
   for (int t = 0; t < 2; t++) {
     const double median = spread_of(share[t], ROUNDS).median;
-    printf(" %5.2f", median);
+    if (median > 0)
+      printf(" %5.2f", median);
+    else
+      printf(" %5s", "-");
     if (bytes > 1000000 && median > 0)
       bar_at_least(median, 0.6, "frames of %s: pipe / raw, %d thread%s", name, t + 1,
                    t > 0 ? "s" : "");
