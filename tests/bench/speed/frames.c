@@ -18,7 +18,8 @@ enum { FILMS = sizeof films / sizeof *films };
 typedef struct film {
   size_t bytes; /* of a frame */
   uint64_t frames;
-  msr_plan *plan; /* NULL: no more than bytes */
+  msr_plan *plan;   /* NULL: no more than bytes */
+  unsigned threads; /* of the plan and the run */
 } film;
 
 /* ---- Where bytes go */
@@ -51,7 +52,8 @@ static void shoot(const film *f) {
   msr_sink sink;
   must(msr_state_create(f->plan, &state, reason()));
   must(msr_frames_open(f->plan, "-", NULL, true, &sink, reason()));
-  must(msr_run(state, &(msr_run_options){.sinks = &sink, .n_sinks = 1}, reason()));
+  const msr_run_options options = {.sinks = &sink, .n_sinks = 1, .threads = f->threads};
+  must(msr_run(state, &options, reason()));
   must(msr_sink_close(&sink, reason()));
   msr_state_free(state);
 }
@@ -111,6 +113,7 @@ static void open_film(size_t i, int threads, film *f, msr_state **state) {
   const msr_plan_options options = verlet_with(threads);
   f->bytes = 3 * w.width * w.height;
   f->frames = films[i].frames;
+  f->threads = (unsigned)threads;
   *state = state_of(&w, step, films[i].frames, &options, &f->plan);
   work_free(&w);
 }

@@ -59,8 +59,8 @@ msr_state *state_of(const work *w, double dt, uint64_t images, const msr_plan_op
 }
 
 msr_plan_options verlet_with(int threads) {
-  (void)threads;
-  return (msr_plan_options){.integrator = &msr_integrator_verlet, .substeps = 1};
+  return (msr_plan_options){
+      .integrator = &msr_integrator_verlet, .substeps = 1, .threads = (unsigned)threads};
 }
 
 /* ---- As a contestant */
@@ -106,7 +106,7 @@ static void close_library(void *self) {
 const contestant library = {
     .name = "libmsr",
     .grain = 16,
-    .threads = 1,
+    .threads = MOST_THREADS,
     .open = open_library,
     .run = run_library,
     .read = read_library,
