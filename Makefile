@@ -51,10 +51,11 @@ BITS_SRC := $(wildcard tests/bits/*.c)
 BENCH_SRC := $(wildcard tests/bench/*.c tests/bench/*.cc)
 HARD_SRC := $(wildcard tests/stability/*.c)
 BESIDE_SRC := $(wildcard tests/bench/stability/*.c tests/bench/stability/*.cc)
+SPEED_SRC := $(wildcard tests/bench/speed/*.c)
 SOURCES  := $(LIB_SRC) $(CLI_SRC) $(TEST_SRC) $(FUZZ_SRC) $(BITS_SRC) $(HARD_SRC) $(BENCH_SRC) \
-            $(BESIDE_SRC) $(EX_SRC) $(wildcard tests/bench/effects/*.c)
+             $(BESIDE_SRC) $(SPEED_SRC) $(EX_SRC) $(wildcard tests/bench/effects/*.c)
 HEADERS  := $(wildcard include/*.h libmsr/*/*.h libmsr/*/*.inc cli/*.h tests/*.h tests/fuzz/*.h \
-            tests/stability/*.h tests/bench/*.h tests/bench/stability/*.h)
+            tests/stability/*.h tests/bench/*.h tests/bench/stability/*.h tests/bench/speed/*.h)
 DOCS     := $(wildcard README.md LICENSE CHANGELOG.md docs/*.md docs/images/*.png include/*.h \
              examples/*.md examples/*.c examples/scenes/*)
 MAN      := $(wildcard docs/*.1)
@@ -90,7 +91,7 @@ $(BUILD)/flags $(BUILD)/sources: FORCE | $(FIRST)
 $(BUILD)/obj/libmsr/%.o $(BUILD)/obj/tests/%.o: INTERNAL = -Ilibmsr $(GSL_CFLAGS)
 $(BUILD)/obj/%.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(call show,CC)$(COMPILE) $(INTERNAL) $(ENTRY) -MMD -MP -c $< -o $@
+	$(call show,CC)$(COMPILE) $(INTERNAL) $(OWN) -MMD -MP -c $< -o $@
 
 $(BUILD)/libmsr.a: $(LIB_OBJ) $(BUILD)/sources
 	@rm -f $@
@@ -116,7 +117,7 @@ $(EXAMPLES): $(BUILD)/examples/%: $(BUILD)/obj/examples/%.o $(BUILD)/libmsr.a
 
 ## deps: installs what is missing; with other goals, only what they need (make deps demo)
 deps:
-	@CC='$(CC)' PKG_CONFIG='$(PKG_CONFIG)' sh tests/mk-deps.sh $(filter-out deps,$(MAKECMDGOALS))
+	@CC='$(CC)' PKG_CONFIG='$(PKG_CONFIG)' BUILD='$(BUILD)' sh tests/mk-deps.sh $(filter-out deps,$(MAKECMDGOALS))
 
 ## demo: frames of a real scene in build/demo/
 SCENE = examples/scenes/assignment
@@ -143,7 +144,7 @@ $(BUILD)/tests/test_hard: $(call object,$(HARD_SRC))
 # test_corpus runs every fuzzer on its corpus: there the entry of fuzz_x.c is called fuzz_x.
 $(BUILD)/tests/test_corpus: $(call object,$(FUZZ_SRC))
 rename = -DLLVMFuzzerTestOneInput=$(*F)
-$(BUILD)/obj/tests/fuzz/%.o: ENTRY = $(if $(findstring fuzzer,$(SAN)),,$(rename))
+$(BUILD)/obj/tests/fuzz/%.o: OWN = $(if $(findstring fuzzer,$(SAN)),,$(rename))
 
 LOCALE = $(BUILD)/locale/fr_FR.UTF-8
 $(LOCALE): | $(FIRST)
@@ -275,6 +276,23 @@ $(BESIDE): $(call object,$(BESIDE_SRC) tests/bench/fail.c) $(BUILD)/libmsr.a
 bench-stability: $(BESIDE)
 	@$(BESIDE)
 
+SPEED = $(BUILD)/bench/speed
+
+# The assignment's program is compiled as a student does; the kernel's vectors are arguments of
+# inlined functions only.
+$(BUILD)/obj/tests/bench/speed/assignment.o: OWN = -O2 -fmath-errno
+$(BUILD)/obj/tests/bench/speed/limit_kernel.o: OWN = -Wno-psabi
+
+$(SPEED): $(call object,$(SPEED_SRC) tests/bench/fail.c) $(BUILD)/libmsr.a
+	@mkdir -p $(@D)
+	$(call show,LINK)$(LINK) -pthread -o $@ $^ $(GSL_LIBS)
+
+## bench TABLES=blocks: speed, beside others and the machine's limit; all (the default) take minutes
+TABLES =
+bench: $(SPEED)
+	@mkdir -p $(BUILD)/bench/peers
+	@$(SPEED) $(BUILD)/bench/peers $(TABLES)
+
 # ---- Report --------------------------------------------------------------------------------------
 
 STUDIES = turn assignment pendulum
@@ -349,7 +367,7 @@ help:
 
 .PHONY: all examples everything deps demo test check check-gcc check-clang check-san \
         check-valgrind check-tidy check-cppcheck check-format format coverage fuzz run-fuzzers \
-        stability mutations bench-accuracy bench-guard bench-effects bench-stability report figures \
+        stability mutations bench bench-accuracy bench-guard bench-effects bench-stability report figures \
         install uninstall clean help
 FORCE:
 .DELETE_ON_ERROR:

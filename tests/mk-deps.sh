@@ -40,6 +40,10 @@ bench    | scipy                               | python3-scipy   | python3-scipy
 beside   | has g++                             | g++             | gcc-c++               | gcc          | gcc
 beside   | header chipmunk/chipmunk.h          | libchipmunk-dev | chipmunk-devel        | chipmunk     | chipmunk
 beside   | header_cxx box2d/box2d.h             | libbox2d-dev    | Box2D-devel           | box2d        | box2d
+speed    | has lmp                             | lammps          | lammps                | lammps       | lammps
+speed    | has mpirun                          | openmpi-bin     | openmpi               | openmpi      | open-mpi
+speed    | has stdbuf                          | coreutils       | coreutils             | coreutils    | coreutils
+speed    | python3 -m ensurepip --version      | python3-venv    | python3               | python       | python
 fuzz     | fuzzer                              | libclang-rt-dev | compiler-rt           | compiler-rt  | llvm
 report   | has gnuplot                         | gnuplot-nox     | gnuplot               | gnuplot      | gnuplot
 report   | kpsewhich booktabs.sty lmodern.sty  | texlive-latex-recommended lmodern | texlive-collection-latexrecommended texlive-lm | texlive-latexrecommended texlive-fontsrecommended | texlive
@@ -51,6 +55,7 @@ for goal in "${@:-everything}"; do
   case $goal in
   all | demo | examples | install | uninstall | clean | help) ;;
   test | bench-guard | bench-effects) groups="$groups test" ;;
+  bench) groups="$groups speed" ;;
   bench-accuracy) groups="$groups bench" ;;
   bench-stability) groups="$groups beside" ;;
   check | coverage | fuzz) groups="$groups test $goal" ;;
@@ -58,6 +63,19 @@ for goal in "${@:-everything}"; do
   *) groups='build test check coverage fuzz' ;;
   esac
 done
+
+# Debian's Numba is years old and several times slower: the benchmark's is PyPI's, in build/.
+pypi() {
+  case " $groups " in
+  *' speed '*) ;;
+  *) return 0 ;;
+  esac
+  python=${BUILD:-build}/bench/peers/python
+  "$python/bin/python3" -c 'import numba' 2>/dev/null && return
+  echo 'deps: installing Numba from PyPI'
+  python3 -m venv "$python" && "$python/bin/python3" -m pip install -q numba ||
+    echo "deps: it can't be had; the benchmark does without, or with your Python's"
+}
 
 missing=$(echo "$table" | while IFS='|' read -r group check names; do
   case " $groups " in
@@ -67,6 +85,7 @@ done)
 column() { echo "$missing" | cut -d'|' -f"$1" | tr -s ' ' '\n' | sort -u | xargs; }
 
 if [ -z "$missing" ]; then
+  pypi
   echo 'deps: nothing is missing'
   exit
 fi
@@ -87,3 +106,4 @@ known=$(for name in $(column 1); do
   ! apt-cache show "$name" >/dev/null 2>&1 || echo "$name"
 done)
 $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends $known
+pypi
