@@ -1,0 +1,146 @@
+/* watch.c - lists of the pairs of each body, with a skin (Verlet 1967, Phys. Rev. 159, 98), kept in
+ * a pool; see watch.h. */
+#include "contacts/watch.h"
+
+#include <string.h>
+
+/* ---- Memory */
+
+msri_watch msri_watch_place(const msri_bodies *bodies, double diameter, const msri_ties *ties,
+                            char *block, size_t *end) {
+  const size_t n = bodies->n_masses;
+  msri_watch w = {.bodies = bodies, .diameter = diameter};
+  w.near = msri_near_place(n, diameter, ties, block, end);
+  w.kept = msri_near_part(block, end, sizeof *w.kept);
+  w.body = msri_near_part(block, end, bodies->n * sizeof *w.body);
+  w.box = msri_near_part(block, end, bodies->n * sizeof *w.box);
+  w.rank = msri_near_part(block, end, bodies->n * sizeof *w.rank);
+  w.at = msri_near_part(block, end, 2 * n * sizeof *w.at);
+  w.pool = msri_near_part(block, end, w.near.capacity * sizeof *w.pool);
+  w.chosen = msri_near_part(block, end, w.near.capacity * sizeof *w.chosen);
+  return w;
+}
+
+/* ---- The pool */
+
+static void keep(msri_watch *w, msri_range *range, size_t *used) {
+  const size_t n = range->end - range->begin;
+  if (n > 0) memcpy(w->chosen + *used, w->pool + range->begin, n * sizeof *w->pool);
+  *range = (msri_range){*used, *used + n};
+  *used += n;
+}
+
+/* Closes the gaps that lists have left which are no longer good. */
+static void close_gaps(msri_watch *w) {
+  size_t used = 0;
+  for (size_t b = 0; b < w->bodies->n; b++) keep(w, &w->body[b].pairs, &used);
+  keep(w, &w->kept->outer, &used);
+  if (used > 0) memcpy(w->pool, w->chosen, used * sizeof *w->pool);
+  w->kept->used = used;
+}
+
+bool msri_watch_store(msri_watch *w, msri_range *range) {
+  const size_t found = w->near.found;
+  if (w->kept->used + found > w->near.capacity) close_gaps(w);
+  if (w->near.full || w->kept->used + found > w->near.capacity) return false;
+  if (range->begin == range->end) range->begin = w->kept->used;
+  if (found > 0) memcpy(w->pool + w->kept->used, w->near.pair, found * sizeof *w->pool);
+  range->end = w->kept->used += found;
+  return true;
+}
+
+/* ---- Pairs of one body */
+
+/* Where form changes fast a larger skin holds longer, at the price of more pairs to look at. */
+static double skin_for(const msri_watch *w, const msri_watched *body, double way) {
+  const double most = msri_most_skin * w->diameter, least = msri_least_skin * w->diameter;
+  const bool again =
+      body->inner.skin > 0 && (double)(w->kept->drifts - body->listed) < msri_many_drifts;
+  return msri_max(1.25 * way, again ? msri_min(2 * body->inner.skin, most) : least);
+}
+
+static void list_inner(msri_watch *w, size_t b, const double *q0, double way) {
+  msri_watched *const body = &w->body[b];
+  const double skin = skin_for(w, body, way);
+  const size_t members = msri_bodies_masses(w->bodies, b, w->near.set);
+  msri_near_list_at(&w->near, q0, (w->diameter + 2 * skin) * msri_more, w->near.set, members);
+  body->pairs = (msri_range){0, 0};
+  body->inner = (msri_reach){msri_watch_store(w, &body->pairs), skin, 0};
+  body->listed = w->kept->drifts;
+  for (size_t s = w->bodies->first[b]; s < w->bodies->first[b + 1]; s++) {
+    const msri_stretch r = w->bodies->stretch[s];
+    for (size_t d = 0; d <= w->near.n; d += w->near.n)
+      memcpy(w->at + r.begin + d, q0 + r.begin + d, (r.end - r.begin) * sizeof *q0);
+  }
+}
+
+/* How far its masses are from where they would be in the form that it had. */
+static void look_again(msri_watch *w, size_t b, const double *q0) {
+  msri_reach *const inner = &w->body[b].inner;
+  if (inner->known) inner->used = msri_motion_change(w->bodies, b, w->at, q0);
+}
+
+static bool cover_inner(msri_watch *w, size_t b, const double *q0, double way) {
+  const msri_reach *inner = &w->body[b].inner;
+  if (msri_reach_covers(inner, way)) return true;
+  look_again(w, b, q0);
+  if (!msri_reach_covers(inner, way)) list_inner(w, b, q0, way);
+  return inner->known;
+}
+
+/* ---- A drift */
+
+void msri_watch_set_ways(msri_watch *w) {
+  const size_t n = w->bodies->n;
+  double mean[2] = {0, 0}, sound = 0;
+  for (size_t b = 0; b < n; b++) {
+    const msri_motion m = w->body[b].motion = msri_motion_of(&w->box[b]);
+    if (m.spread < (double)INFINITY) mean[0] += m.way[0], mean[1] += m.way[1], sound++;
+  }
+  for (size_t b = 0; b < n; b++) {
+    const msri_motion m = w->body[b].motion;
+    const double x = m.way[0] - mean[0] / sound, y = m.way[1] - mean[1] / sound;
+    w->body[b].away = n > 1 ? sqrt(x * x + y * y) * msri_more + m.spread : 0;
+  }
+}
+
+void msri_watch_begin(msri_watch *w, const double *q0, const double *q) {
+  const bool moved = !q || w->kept->q != q;
+  msri_watch_set_ways(w);
+  for (size_t b = 0; b < w->bodies->n; b++) {
+    w->body[b].hot = false;
+    if (!moved) continue;
+    w->body[b].outer.known = false;
+    look_again(w, b, q0);
+  }
+}
+
+void msri_watch_cover_ways(msri_watch *w, const double *q0) {
+  for (size_t b = 0; b < w->bodies->n; b++) {
+    const double spread = w->body[b].motion.spread;
+    w->body[b].swift = !(spread <= msri_most_skin * w->diameter) || !cover_inner(w, b, q0, spread);
+  }
+  msri_watch_cover_outer(w, q0, 0);
+}
+
+bool msri_watch_cover_pushes(msri_watch *w, const double *q0, double most) {
+  const size_t n = w->bodies->n;
+  bool room = true;
+  msri_watch_cover_outer(w, q0, most);
+  for (size_t b = 0; b < n; b++)
+    if (w->body[b].hot) w->body[w->body[b].cluster].hot = true;
+  for (size_t b = 0; b < n && room; b++) {
+    w->body[b].hot = w->body[w->body[b].cluster].hot;
+    room = !w->body[b].swift && (!w->body[b].hot || cover_inner(w, b, q0, most));
+  }
+  return room;
+}
+
+void msri_watch_end(msri_watch *w, const double *q) {
+  for (size_t b = 0; b < w->bodies->n; b++) {
+    w->body[b].inner.used += w->body[b].motion.spread;
+    w->body[b].outer.used += w->body[b].away;
+  }
+  w->kept->drifts++;
+  w->kept->q = q;
+}
