@@ -7,15 +7,20 @@
 
 /* ---- Skins: for many drifts; for few */
 
+/* Where boxes are apart lists are made for so many drifts. */
+static const double many = 64;
+
 /* Beyond this, in diameters, masses are better looked at on their ways. */
 static const double longest_skin = 1.6;
 
 static double loose(const msri_watch *w, double away) {
-  return msri_max(msri_least_skin * w->diameter, msri_many_drifts * away);
+  return msri_max(msri_least_skin * w->diameter, many * away);
 }
 
 static double tight(const msri_watch *w, double away) {
-  return msri_max(1.25 * away, msri_min(msri_most_skin * w->diameter, loose(w, away)));
+  const double some = msri_many_drifts * away;
+  return msri_max(1.25 * away, msri_min(msri_most_skin * w->diameter,
+                                        msri_max(msri_least_skin * w->diameter, some)));
 }
 
 /* How near two masses of these bodies are that belong in the list. */

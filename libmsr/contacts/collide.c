@@ -49,10 +49,14 @@ static double distance2(const msri_drift *d, const msri_pair *p) {
   return rx * rx + ry * ry;
 }
 
-/* Pairs of one body: what is further away than its masses go against each other isn't met. */
+/* What is further away than the masses of a body go against each other isn't met. */
+static double reach_in(const course *c, size_t b) {
+  return (c->d->diameter + 2 * c->watch->body[b].motion.spread) * msri_more;
+}
+
 static bool any_inside(const course *c, size_t b) {
   const msri_watched *body = &c->watch->body[b];
-  const double reach = (c->d->diameter + 2 * body->motion.spread) * msri_more;
+  const double reach = reach_in(c, b);
   for (size_t k = body->pairs.begin; k < body->pairs.end; k++) {
     const msri_pair *p = &c->watch->pool[k];
     if (distance2(c->d, p) <= reach * reach && concerns(c->d, p)) return true;
@@ -189,10 +193,12 @@ static bool meet_on_ways(const void *self, const msri_ways *ways, size_t i, size
   return msri_disc_pair_meets(&p);
 }
 
-static void append_meeting(course *c, msri_range range) {
+/* Of those within reach. */
+static void append_meeting(course *c, msri_range range, double reach) {
   const msri_watch *w = c->watch;
   for (size_t k = range.begin; k < range.end; k++)
-    if (!are_swift(w, &w->pool[k]) && meets(c->d, w->pool[k].i, w->pool[k].j))
+    if (distance2(c->d, &w->pool[k]) <= reach * reach && !are_swift(w, &w->pool[k]) &&
+        meets(c->d, w->pool[k].i, w->pool[k].j))
       append(c, &w->pool[k]);
 }
 
@@ -204,8 +210,8 @@ static bool list_fast(course *c) {
   c->n = 0, c->full = false;
   const size_t found = list_swift(c, meet_on_ways);
   for (size_t k = 0; k < found; k++) append(c, &w->near.pair[k]);
-  for (size_t b = 0; b < w->bodies->n; b++) append_meeting(c, w->body[b].pairs);
-  append_meeting(c, w->kept->outer);
+  for (size_t b = 0; b < w->bodies->n; b++) append_meeting(c, w->body[b].pairs, reach_in(c, b));
+  append_meeting(c, w->kept->outer, (double)INFINITY);
   put_in_order(c);
   return c->n > 0;
 }

@@ -3,6 +3,7 @@
  * (collide.c). */
 #include "contacts/discs.h"
 
+#include "base/vector.h"
 #include "contacts/collide.h"
 
 #include <stdlib.h>
@@ -69,13 +70,13 @@ uint64_t msri_discs_drift(const msri_obstacles *all, double h, const double *u, 
   const msri_contact *supports = all->supports;
   course c = begin(all, h);
   msri_drift *const d = &c.d;
-  if (supports->drift) {
-    memcpy(c.vector, q, 2 * d->n * sizeof *q);
+  memcpy(c.vector, q, 2 * d->n * sizeof *q);
+  if (supports->drift)
     met = supports->drift(supports->self, d->n, h, u, a, q, v, owed);
-    msri_motion_measure(c.watch.bodies, c.vector, q, c.watch.box);
-    d->owed = owed;
-  } else
-    msri_motion_drift(c.watch.bodies, h, u, c.vector, q, c.watch.box);
+  else
+    msri_add_scaled(2 * d->n, h, u, q);
+  msri_motion_measure(c.watch.bodies, c.vector, q, c.watch.box);
+  d->owed = supports->drift ? owed : NULL;
   d->q0 = c.vector, d->q = q, d->v = v;
   d->kick = a, d->unit = h;
   return met + msri_collide(d, &c.watch, q);

@@ -1,5 +1,5 @@
 /* motion.c - see motion.h. Least and largest values are gathered in eight lanes: their order
- * doesn't matter, and vectors of every width take part.
+ * doesn't matter.
  *
  * How a body went without a change of its form is found from some of its masses, by the closed form
  * of the best rotation in a plane (Umeyama 1991, Least-squares estimation of transformation
@@ -9,123 +9,100 @@
 #include "base/machine.h"
 
 #include <math.h>
+#include <string.h>
+#if MSRI_WIDE
+#include <immintrin.h>
+#endif
 
 /* ---- Lanes */
 
 enum { LANES = 8 };
 
+/* What is no number is left out: it meets nothing. */
 typedef struct lanes {
-  double low[LANES], high[LANES], odd[LANES]; /* odd: 0, or no number once a value wasn't finite */
+  double low[LANES], high[LANES];
 } lanes;
 
-MSRI_INLINE void clear(lanes *l) {
-  for (int k = 0; k < LANES; k++)
-    l->low[k] = (double)INFINITY, l->high[k] = -(double)INFINITY, l->odd[k] = 0;
+static void clear(lanes *l) {
+  for (int k = 0; k < LANES; k++) l->low[k] = (double)INFINITY, l->high[k] = -(double)INFINITY;
 }
 
-MSRI_INLINE void take(lanes *l, size_t k, double d) {
-  l->low[k] = d < l->low[k] ? d : l->low[k];
-  l->high[k] = d > l->high[k] ? d : l->high[k];
-  l->odd[k] += d - d;
-}
-
-MSRI_INLINE void gather(const lanes *l, double *low, double *high) {
-  double odd = 0;
+static void gather(const lanes *l, double *low, double *high) {
   *low = (double)INFINITY, *high = -(double)INFINITY;
-  for (int k = 0; k < LANES; k++) {
+  for (int k = 0; k < LANES; k++)
     *low = msri_min(*low, l->low[k]), *high = msri_max(*high, l->high[k]);
-    odd += l->odd[k];
-  }
-  if (odd != 0) *low = -(double)INFINITY, *high = (double)INFINITY;
 }
 
-/* ---- One coordinate of a stretch */
+static void take(size_t n, const double *x0, const double *x, lanes *l) {
+  for (size_t i = 0; i < n; i++) {
+    const double d = x[i] - x0[i];
+    l->low[0] = msri_min(d, l->low[0]), l->high[0] = msri_max(d, l->high[0]);
+  }
+}
 
-MSRI_INLINE void drift(size_t n, double h, const double *restrict u, double *restrict x0,
-                       double *restrict x, lanes *all) {
-  lanes l = *all;
-  double d[LANES];
-  size_t i = 0;
-  for (; i + LANES <= n; i += LANES) {
-    for (size_t k = 0; k < LANES; k++) {
-      const double from = x[i + k], to = from + h * u[i + k];
-      x0[i + k] = from, x[i + k] = to, d[k] = to - from;
+#if MSRI_WIDE
+/* The same; gcc doesn't make vectors of such a loop. */
+MSRI_AVX2 static void take_avx2(size_t n, const double *x0, const double *x, lanes *l) {
+  __m256d low[2], high[2];
+  const size_t whole = n / LANES * LANES;
+  for (int k = 0; k < 2; k++)
+    low[k] = _mm256_loadu_pd(l->low + 4 * k), high[k] = _mm256_loadu_pd(l->high + 4 * k);
+  for (size_t i = 0; i < whole; i += LANES)
+    for (size_t k = 0; k < 2; k++) {
+      const __m256d from = _mm256_loadu_pd(x0 + i + 4 * k), to = _mm256_loadu_pd(x + i + 4 * k);
+      const __m256d d = _mm256_sub_pd(to, from);
+      low[k] = _mm256_min_pd(d, low[k]), high[k] = _mm256_max_pd(d, high[k]);
     }
-    for (size_t k = 0; k < LANES; k++) take(&l, k, d[k]);
-  }
-  for (; i < n; i++) {
-    const double from = x[i], to = from + h * u[i];
-    x0[i] = from, x[i] = to;
-    take(&l, 0, to - from);
-  }
-  *all = l;
+  for (int k = 0; k < 2; k++)
+    _mm256_storeu_pd(l->low + 4 * k, low[k]), _mm256_storeu_pd(l->high + 4 * k, high[k]);
+  take(n - whole, x0 + whole, x + whole, l);
 }
+#endif
 
-MSRI_INLINE void measure(size_t n, const double *x0, const double *x, lanes *all) {
-  lanes l = *all;
-  size_t i = 0;
-  for (; i + LANES <= n; i += LANES)
-    for (size_t k = 0; k < LANES; k++) take(&l, k, x0 ? x[i + k] - x0[i + k] : x[i + k]);
-  for (; i < n; i++) take(&l, 0, x0 ? x[i] - x0[i] : x[i]);
-  *all = l;
+typedef void taking(size_t n, const double *x0, const double *x, lanes *l);
+
+static taking *widest(void) {
+#if MSRI_WIDE
+  if (msri_has_avx2()) return take_avx2;
+#endif
+  return take;
 }
 
 /* ---- All bodies */
 
 typedef struct task {
   const msri_bodies *bodies;
-  double h;
-  const double *u; /* x += h u, x0 being kept; NULL: q is measured, from q0 or, that NULL, alone */
-  double *x0, *x;
-  const double *q0, *q;
+  taking *take;
+  const double *q0, *q; /* q0 NULL: 0 */
 } task;
 
-MSRI_INLINE void do_stretch(const task *t, msri_stretch s, size_t from, lanes *l) {
-  const size_t i = s.begin + from, n = s.end - s.begin;
-  if (t->u)
-    drift(n, t->h, t->u + i, t->x0 + i, t->x + i, l);
-  else if (t->q0)
-    measure(n, t->q0 + i, t->q + i, l);
-  else
-    measure(n, NULL, t->q + i, l);
+enum { BLOCK = 512 };
+
+static const double zeros[BLOCK];
+
+static void do_stretch(const task *t, msri_stretch s, lanes *x, lanes *y) {
+  const size_t all = t->bodies->n_masses;
+  for (size_t i = s.begin; i < s.end; i += BLOCK) {
+    const size_t n = s.end - i < BLOCK ? s.end - i : BLOCK;
+    t->take(n, t->q0 ? t->q0 + i : zeros, t->q + i, x);
+    t->take(n, t->q0 ? t->q0 + all + i : zeros, t->q + all + i, y);
+  }
 }
 
-MSRI_INLINE void do_all(const task *t, msri_box *box) {
+static void do_all(const task *t, msri_box *box) {
   const msri_bodies *b = t->bodies;
   for (size_t k = 0; k < b->n; k++) {
     lanes x, y;
     clear(&x), clear(&y);
-    for (size_t s = b->first[k]; s < b->first[k + 1]; s++) {
-      do_stretch(t, b->stretch[s], 0, &x);
-      do_stretch(t, b->stretch[s], b->n_masses, &y);
-    }
+    for (size_t s = b->first[k]; s < b->first[k + 1]; s++) do_stretch(t, b->stretch[s], &x, &y);
     gather(&x, &box[k].low[0], &box[k].high[0]);
     gather(&y, &box[k].low[1], &box[k].high[1]);
   }
 }
 
-#if MSRI_WIDE
-MSRI_AVX2 static void do_all_avx2(const task *t, msri_box *box) { do_all(t, box); }
-#endif
-
-static void do_task(const task *t, msri_box *box) {
-#if MSRI_WIDE
-  if (msri_has_avx2()) {
-    do_all_avx2(t, box);
-    return;
-  }
-#endif
-  do_all(t, box);
-}
-
 void msri_motion_measure(const msri_bodies *bodies, const double *q0, const double *q,
                          msri_box *box) {
-  do_task(&(task){.bodies = bodies, .q0 = q0, .q = q}, box);
-}
-
-void msri_motion_drift(const msri_bodies *bodies, double h, const double *u, double *q0, double *q,
-                       msri_box *box) {
-  do_task(&(task){.bodies = bodies, .h = h, .u = u, .x0 = q0, .x = q}, box);
+  do_all(&(task){bodies, widest(), q0, q}, box);
 }
 
 msri_motion msri_motion_of(const msri_box *ways) {
@@ -184,17 +161,26 @@ static turn best_turn(size_t n, const double *at, const double *q, const size_t 
   return t;
 }
 
-/* The largest square of a distance, or more; infinite if one isn't finite. */
+static bool is_finite(const turn *t) {
+  return isfinite(t->c + t->s) && isfinite(t->from[0] + t->from[1] + t->to[0] + t->to[1]);
+}
+
+/* The largest square of a distance. */
 static double farthest(const turn *t, size_t n, msri_stretch r, const double *at, const double *q) {
-  double most = 0, odd = 0;
-  for (size_t i = r.begin; i < r.end; i++) {
-    const double px = at[i] - t->from[0], py = at[i + n] - t->from[1];
-    const double x = q[i] - t->to[0] - (t->c * px - t->s * py);
-    const double y = q[i + n] - t->to[1] - (t->s * px + t->c * py), r2 = x * x + y * y;
-    most = r2 > most ? r2 : most;
-    odd += r2 - r2;
+  const double *px = at + r.begin, *py = px + n, *x = q + r.begin, *y = x + n;
+  double square[BLOCK], most = 0;
+  for (size_t begin = r.begin; begin < r.end; begin += BLOCK) {
+    const size_t count = r.end - begin < BLOCK ? r.end - begin : BLOCK;
+    for (size_t k = 0; k < count; k++) {
+      const double ax = px[k] - t->from[0], ay = py[k] - t->from[1];
+      const double dx = x[k] - t->to[0] - (t->c * ax - t->s * ay);
+      const double dy = y[k] - t->to[1] - (t->s * ax + t->c * ay);
+      square[k] = dx * dx + dy * dy;
+    }
+    for (size_t k = 0; k < count; k++) most = msri_max(square[k], most);
+    px += count, py += count, x += count, y += count;
   }
-  return odd == 0 ? most : (double)INFINITY;
+  return most;
 }
 
 double msri_motion_change(const msri_bodies *b, size_t body, const double *at, const double *q) {
@@ -202,6 +188,7 @@ double msri_motion_change(const msri_bodies *b, size_t body, const double *at, c
   const size_t chosen = choose_some(b, body, some);
   const turn t = best_turn(b->n_masses, at, q, some, chosen);
   double most = 0;
+  if (!is_finite(&t)) return (double)INFINITY;
   for (size_t s = b->first[body]; s < b->first[body + 1]; s++)
     most = msri_max(most, farthest(&t, b->n_masses, b->stretch[s], at, q));
   return sqrt(most);

@@ -21,10 +21,6 @@ msri_motion msri_motion_of(const msri_box *ways);
 void msri_motion_measure(const msri_bodies *bodies, const double *q0, const double *q,
                          msri_box *box);
 
-/* q += h u, and the boxes of these ways; q0 becomes where masses were. */
-void msri_motion_drift(const msri_bodies *bodies, double h, const double *u, double *q0, double *q,
-                       msri_box *box);
-
 /* How far at most a mass is from where it would be if the body had gone from `at` to q without a
  * change of its form. */
 double msri_motion_change(const msri_bodies *bodies, size_t body, const double *at,
