@@ -64,12 +64,24 @@ void msri_discs_moved(const msri_discs *discs, void *room) {
 
 /* ---- Drift and bounce */
 
+/* Where no pair is near a look at velocities is enough. */
+static bool drifts_alone(course *c, double h, const double *u, double *q) {
+  msri_watch *const w = &c->watch;
+  if (!msri_watch_is_idle(w, q)) return false;
+  msri_motion_measure(w->bodies, NULL, u, w->box);
+  if (!msri_watch_foresees(w, h)) return false;
+  msri_add_scaled(2 * c->d.n, h, u, q);
+  msri_watch_end(w, q);
+  return true;
+}
+
 uint64_t msri_discs_drift(const msri_obstacles *all, double h, const double *u, const double *a,
                           double *q, double *v, double *owed) {
   uint64_t met = 0;
   const msri_contact *supports = all->supports;
   course c = begin(all, h);
   msri_drift *const d = &c.d;
+  if (!supports->drift && drifts_alone(&c, h, u, q)) return 0;
   memcpy(c.vector, q, 2 * d->n * sizeof *q);
   if (supports->drift)
     met = supports->drift(supports->self, d->n, h, u, a, q, v, owed);

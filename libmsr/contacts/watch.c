@@ -2,6 +2,8 @@
  * a pool; see watch.h. */
 #include "contacts/watch.h"
 
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 /* ---- Memory */
@@ -67,10 +69,14 @@ static void list_inner(msri_watch *w, size_t b, const double *q0, double way) {
   body->pairs = (msri_range){0, 0};
   body->inner = (msri_reach){msri_watch_store(w, &body->pairs), skin, 0};
   body->listed = w->kept->drifts;
+  body->far = 0;
   for (size_t s = w->bodies->first[b]; s < w->bodies->first[b + 1]; s++) {
     const msri_stretch r = w->bodies->stretch[s];
     for (size_t d = 0; d <= w->near.n; d += w->near.n)
-      memcpy(w->at + r.begin + d, q0 + r.begin + d, (r.end - r.begin) * sizeof *q0);
+      for (size_t i = r.begin + d; i < r.end + d; i++) {
+        w->at[i] = q0[i];
+        body->far = msri_max(body->far, fabs(q0[i]));
+      }
   }
 }
 
@@ -136,10 +142,46 @@ bool msri_watch_cover_pushes(msri_watch *w, const double *q0, double most) {
   return room;
 }
 
+bool msri_watch_is_idle(const msri_watch *w, const double *q) {
+  bool idle = w->kept->q == q && w->kept->outer.begin == w->kept->outer.end;
+  for (size_t b = 0; b < w->bodies->n && idle; b++) {
+    const msri_watched *body = &w->body[b];
+    idle = body->inner.known && body->pairs.begin == body->pairs.end && !body->swift &&
+           (body->outer.known || w->bodies->n == 1);
+  }
+  return idle;
+}
+
+/* Places are rounded, and ways with them. */
+static double rounding_of(const msri_watched *body) {
+  return 8 * DBL_EPSILON * (body->far + fabs(body->motion.way[0]) + fabs(body->motion.way[1]));
+}
+
+bool msri_watch_foresees(msri_watch *w, double h) {
+  const size_t n = w->bodies->n;
+  bool good = true;
+  for (size_t b = 0; b < n; b++)
+    for (int d = 0; d < 2; d++) {
+      const double one = h * w->box[b].low[d], other = h * w->box[b].high[d];
+      w->box[b].low[d] = msri_min(one, other), w->box[b].high[d] = msri_max(one, other);
+    }
+  msri_watch_set_ways(w);
+  for (size_t b = 0; b < n && good; b++) {
+    msri_watched *const body = &w->body[b];
+    const double rounding = rounding_of(body);
+    body->motion.spread += rounding, body->away += rounding;
+    good = msri_reach_covers(&body->inner, body->motion.spread) &&
+           (n == 1 || msri_reach_covers(&body->outer, body->away));
+  }
+  return good;
+}
+
 void msri_watch_end(msri_watch *w, const double *q) {
   for (size_t b = 0; b < w->bodies->n; b++) {
     w->body[b].inner.used += w->body[b].motion.spread;
     w->body[b].outer.used += w->body[b].away;
+    w->body[b].far +=
+        fabs(w->body[b].motion.way[0]) + fabs(w->body[b].motion.way[1]) + w->body[b].motion.spread;
   }
   w->kept->drifts++;
   w->kept->q = q;

@@ -27,6 +27,7 @@ typedef struct msri_watched {
   msri_reach inner, outer; /* pairs of its own; with other bodies */
   msri_range pairs;        /* of its own, ascending */
   uint64_t listed;         /* when these were, in drifts */
+  double far;              /* no coordinate is larger than that [px] */
   msri_motion motion;      /* in this one */
   double away;    /* in this one, how far at most from what goes as bodies do in the mean [px] */
   size_t cluster; /* one of the bodies that listed pairs join it to; alike for all of them */
@@ -63,6 +64,13 @@ msri_watch msri_watch_place(const msri_bodies *bodies, double diameter, const ms
 /* A drift begins at q0, and would go by the ways of which `box` is; q is where places are stored
  * from one drift to the next, or NULL if others may have moved them since. */
 void msri_watch_begin(msri_watch *watch, const double *q0, const double *q);
+
+/* Is no pair listed, so that a look at velocities may be worth while? */
+bool msri_watch_is_idle(const msri_watch *watch, const double *q);
+
+/* In a drift by h with the velocities of which `box` is, can no two masses meet? If so it begins.
+ */
+bool msri_watch_foresees(msri_watch *watch, double h);
 
 /* The ways are now those of which `box` is. */
 void msri_watch_set_ways(msri_watch *watch);
