@@ -1,7 +1,7 @@
 /* across.c - pairs of two bodies: where boxes meet, from left to right (Baraff 1992, Dynamic
  * simulation of non-penetrating rigid bodies: sort and sweep), the masses that are in both. */
 #include "contacts/cells.h"
-#include "contacts/watch.h"
+#include "contacts/lists.h"
 
 #include <math.h>
 
@@ -13,35 +13,35 @@ static const double many = 64;
 /* Beyond this, in diameters, masses are better looked at on their ways. */
 static const double longest_skin = 1.6;
 
-static double loose(const msri_watch *w, double away) {
+static double loose(const msri_lists *w, double away) {
   return msri_max(msri_least_skin * w->diameter, many * away);
 }
 
-static double tight(const msri_watch *w, double away) {
+static double tight(const msri_lists *w, double away) {
   const double some = msri_many_drifts * away;
   return msri_max(1.25 * away, msri_min(msri_most_skin * w->diameter,
                                         msri_max(msri_least_skin * w->diameter, some)));
 }
 
 /* How near two masses of these bodies are that belong in the list. */
-static double reach_of(const msri_watch *w, size_t a, size_t b) {
+static double reach_of(const msri_lists *w, size_t a, size_t b) {
   return (w->diameter + w->body[a].outer.skin + w->body[b].outer.skin) * msri_more;
 }
 
 /* ---- From left to right */
 
-static double left(const msri_watch *w, size_t b) {
+static double left(const msri_lists *w, size_t b) {
   const double at = w->box[b].low[0] - w->body[b].outer.skin;
   return at - 1e-15 * fabs(at);
 }
 
-static double right(const msri_watch *w, size_t b) {
+static double right(const msri_lists *w, size_t b) {
   const double at = w->box[b].high[0] + (w->body[b].outer.skin + w->diameter) * msri_more;
   return at + 1e-15 * fabs(at);
 }
 
 /* In the order that they had they are nearly sorted (Shell 1959, Comm. ACM 2, 30). */
-static void sort_bodies(msri_watch *w) {
+static void sort_bodies(msri_lists *w) {
   const size_t n = w->bodies->n;
   size_t *const rank = w->rank;
   if (rank[0] == rank[n - 1])
@@ -56,16 +56,16 @@ static void sort_bodies(msri_watch *w) {
     }
 }
 
-static bool boxes_meet(const msri_watch *w, size_t a, size_t b) {
+static bool boxes_meet(const msri_lists *w, size_t a, size_t b) {
   const msri_box *p = &w->box[a], *q = &w->box[b];
   const double reach = reach_of(w, a, b);
   return !(p->low[0] - q->high[0] > reach || q->low[0] - p->high[0] > reach ||
            p->low[1] - q->high[1] > reach || q->low[1] - p->high[1] > reach);
 }
 
-typedef void meeting(msri_watch *w, const double *q0, size_t a, size_t b);
+typedef void meeting(msri_lists *w, const double *q0, size_t a, size_t b);
 
-static void sweep(msri_watch *w, const double *q0, meeting *act) {
+static void sweep(msri_lists *w, const double *q0, meeting *act) {
   const size_t n = w->bodies->n;
   sort_bodies(w);
   for (size_t k = 0; k < n; k++) {
@@ -77,18 +77,18 @@ static void sweep(msri_watch *w, const double *q0, meeting *act) {
 
 /* ---- Two bodies whose boxes meet */
 
-static void tighten(msri_watch *w, const double *q0, size_t a, size_t b) {
+static void tighten(msri_lists *w, const double *q0, size_t a, size_t b) {
   (void)q0;
   w->body[a].outer.known = w->body[b].outer.known = false;
 }
 
-static size_t cluster_of(const msri_watch *w, size_t b) {
+static size_t cluster_of(const msri_lists *w, size_t b) {
   while (w->body[b].cluster != b) b = w->body[b].cluster;
   return b;
 }
 
 /* Masses of a that are within reach of the box of b, to set. */
-static size_t choose(const msri_watch *w, const double *q0, size_t a, size_t b, uint32_t *set) {
+static size_t choose(const msri_lists *w, const double *q0, size_t a, size_t b, uint32_t *set) {
   const double *x = q0, *y = q0 + w->near.n, reach = reach_of(w, a, b);
   const msri_box *box = &w->box[b];
   size_t members = 0;
@@ -101,12 +101,12 @@ static size_t choose(const msri_watch *w, const double *q0, size_t a, size_t b, 
   return members;
 }
 
-static bool are_swift(const msri_watch *w, size_t a, size_t b) {
+static bool are_swift(const msri_lists *w, size_t a, size_t b) {
   const double longest = longest_skin * w->diameter;
   return !(w->body[a].outer.skin <= longest && w->body[b].outer.skin <= longest);
 }
 
-static void list_two(msri_watch *w, const double *q0, size_t a, size_t b) {
+static void list_two(msri_lists *w, const double *q0, size_t a, size_t b) {
   uint32_t *const set = w->near.set;
   bool listed = !are_swift(w, a, b);
   if (listed) {
@@ -114,7 +114,7 @@ static void list_two(msri_watch *w, const double *q0, size_t a, size_t b) {
     const size_t n_b = n_a > 0 ? choose(w, q0, b, a, set + n_a) : 0;
     if (n_b == 0) return;
     msri_near_list_between(&w->near, q0, reach_of(w, a, b), set, n_a, set + n_a, n_b);
-    listed = msri_watch_store(w, &w->kept->outer);
+    listed = msri_lists_store(w, &w->kept->outer);
   }
   if (!listed) w->body[a].swift = w->body[b].swift = true;
   if (!listed || w->near.found > 0) w->body[cluster_of(w, a)].cluster = cluster_of(w, b);
@@ -123,7 +123,7 @@ static void list_two(msri_watch *w, const double *q0, size_t a, size_t b) {
 /* ---- The list */
 
 /* First boxes are widened for many drifts; where then they meet, for few. */
-static void list_all(msri_watch *w, const double *q0, double most) {
+static void list_all(msri_lists *w, const double *q0, double most) {
   const size_t n = w->bodies->n;
   msri_motion_measure(w->bodies, NULL, q0, w->box);
   w->kept->outer = (msri_range){0, 0};
@@ -141,7 +141,7 @@ static void list_all(msri_watch *w, const double *q0, double most) {
   for (size_t b = 0; b < n; b++) w->body[b].outer.known = !w->body[b].swift;
 }
 
-void msri_watch_cover_outer(msri_watch *w, const double *q0, double most) {
+void msri_lists_cover_outer(msri_lists *w, const double *q0, double most) {
   bool good = true;
   if (w->bodies->n == 1) return;
   for (size_t b = 0; b < w->bodies->n; b++)

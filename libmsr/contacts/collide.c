@@ -24,7 +24,7 @@ static const double slow = 0.3;
 /* A drift, and which pairs may meet. */
 typedef struct course {
   msri_drift *d;
-  msri_watch *watch;
+  msri_lists *lists;
   msri_pair *pair; /* those that are close, or that meet */
   size_t n;
   bool full; /* there are more */
@@ -51,27 +51,27 @@ static double distance2(const msri_drift *d, const msri_pair *p) {
 
 /* What is further away than the masses of a body go against each other isn't met. */
 static double reach_in(const course *c, size_t b) {
-  return (c->d->diameter + 2 * c->watch->body[b].motion.spread) * msri_more;
+  return (c->d->diameter + 2 * c->lists->body[b].motion.spread) * msri_more;
 }
 
 static bool any_inside(const course *c, size_t b) {
-  const msri_watched *body = &c->watch->body[b];
+  const msri_listed *body = &c->lists->body[b];
   const double reach = reach_in(c, b);
   for (size_t k = body->pairs.begin; k < body->pairs.end; k++) {
-    const msri_pair *p = &c->watch->pool[k];
+    const msri_pair *p = &c->lists->pool[k];
     if (distance2(c->d, p) <= reach * reach && concerns(c->d, p)) return true;
   }
   return false;
 }
 
-static bool are_swift(const msri_watch *w, const msri_pair *p) {
+static bool are_swift(const msri_lists *w, const msri_pair *p) {
   return w->body[w->bodies->of[p->i]].swift && w->body[w->bodies->of[p->j]].swift;
 }
 
 /* Pairs of bodies for which lists are no good, on their ways: to near.pair. */
 static size_t list_swift(const course *c,
                          bool (*meet)(const void *, const msri_ways *, size_t, size_t)) {
-  msri_watch *w = c->watch;
+  msri_lists *w = c->lists;
   size_t members = 0;
   for (size_t b = 0; b < w->bodies->n; b++)
     if (w->body[b].swift) members += msri_bodies_masses(w->bodies, b, w->near.set + members);
@@ -84,7 +84,7 @@ static size_t list_swift(const course *c,
 
 /* Bodies of which masses meet or overlap become hot. */
 static bool find_hot(const course *c) {
-  msri_watch *w = c->watch;
+  msri_lists *w = c->lists;
   bool any = list_swift(c, meet_or_overlap) > 0;
   for (size_t b = 0; b < w->bodies->n; b++)
     if (!w->body[b].swift && any_inside(c, b)) any = w->body[b].hot = true;
@@ -134,16 +134,16 @@ static bool put_right(const course *c) {
 }
 
 static void append(course *c, const msri_pair *p) {
-  c->full |= c->n == c->watch->near.capacity;
+  c->full |= c->n == c->lists->near.capacity;
   if (!c->full) c->pair[c->n++] = *p;
 }
 
-static void put_in_order(course *c) { msri_near_order(c->pair, c->n, c->watch->near.pair); }
+static void put_in_order(course *c) { msri_near_order(c->pair, c->n, c->lists->near.pair); }
 
 /* ---- Slow ways: one list, of all that may be pushed together */
 
 static void append_close(course *c, msri_range range) {
-  const msri_watch *w = c->watch;
+  const msri_lists *w = c->lists;
   const double reach = (c->d->diameter + 2 * c->d->most) * msri_more;
   for (size_t k = range.begin; k < range.end; k++) {
     const msri_pair *p = &w->pool[k];
@@ -154,8 +154,8 @@ static void append_close(course *c, msri_range range) {
 /* Pairs that are close enough for this step, of bodies that may be pushed; false: they are too
  * many. */
 static bool list_close(course *c) {
-  const msri_watch *w = c->watch;
-  c->n = 0, c->full = !msri_watch_cover_pushes(c->watch, c->d->q0, c->d->most);
+  const msri_lists *w = c->lists;
+  c->n = 0, c->full = !msri_lists_cover_pushes(c->lists, c->d->q0, c->d->most);
   if (c->full) return false;
   for (size_t b = 0; b < w->bodies->n; b++)
     if (w->body[b].hot) append_close(c, w->body[b].pairs);
@@ -195,7 +195,7 @@ static bool meet_on_ways(const void *self, const msri_ways *ways, size_t i, size
 
 /* Of those within reach. */
 static void append_meeting(course *c, msri_range range, double reach) {
-  const msri_watch *w = c->watch;
+  const msri_lists *w = c->lists;
   for (size_t k = range.begin; k < range.end; k++)
     if (distance2(c->d, &w->pool[k]) <= reach * reach && !are_swift(w, &w->pool[k]) &&
         meets(c->d, w->pool[k].i, w->pool[k].j))
@@ -203,10 +203,10 @@ static void append_meeting(course *c, msri_range range, double reach) {
 }
 
 static bool list_fast(course *c) {
-  msri_watch *w = c->watch;
+  msri_lists *w = c->lists;
   msri_motion_measure(w->bodies, c->d->q0, c->d->q, w->box);
-  msri_watch_set_ways(w);
-  msri_watch_cover_ways(w, c->d->q0);
+  msri_lists_set_ways(w);
+  msri_lists_cover_ways(w, c->d->q0);
   c->n = 0, c->full = false;
   const size_t found = list_swift(c, meet_on_ways);
   for (size_t k = 0; k < found; k++) append(c, &w->near.pair[k]);
@@ -266,15 +266,15 @@ static void resolve(course *c) {
   }
 }
 
-uint64_t msri_collide(msri_drift *d, msri_watch *watch, const double *q) {
-  course c = {.d = d, .watch = watch, .pair = watch->chosen};
-  msri_watch_begin(watch, d->q0, q);
-  msri_watch_cover_ways(watch, d->q0);
+uint64_t msri_collide(msri_drift *d, msri_lists *lists, const double *q) {
+  course c = {.d = d, .lists = lists, .pair = lists->chosen};
+  msri_lists_begin(lists, d->q0, q);
+  msri_lists_cover_ways(lists, d->q0);
   if (find_hot(&c)) {
     resolve(&c);
-    msri_motion_measure(watch->bodies, d->q0, d->q, watch->box);
-    msri_watch_set_ways(watch);
+    msri_motion_measure(lists->bodies, d->q0, d->q, lists->box);
+    msri_lists_set_ways(lists);
   }
-  msri_watch_end(watch, q);
+  msri_lists_end(lists, q);
   return d->collisions;
 }

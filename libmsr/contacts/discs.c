@@ -23,7 +23,7 @@ struct msri_discs {
 /* A drift, and which pairs may meet in it. */
 typedef struct course {
   msri_drift d;
-  msri_watch watch;
+  msri_lists lists;
   double *vector; /* [2n] */
 } course;
 
@@ -39,7 +39,7 @@ static course place(const msri_discs *discs, char *room, size_t *end) {
   c.d.next = msri_near_part(room, end, n * sizeof *c.d.next);
   c.d.pass = msri_near_part(room, end, n * sizeof *c.d.pass);
   c.d.held = msri_near_part(room, end, 2 * n);
-  c.watch = msri_watch_place(&discs->bodies, discs->diameter, &discs->ties, room, end);
+  c.lists = msri_lists_place(&discs->bodies, discs->diameter, &discs->ties, room, end);
   return c;
 }
 
@@ -59,19 +59,19 @@ static course begin(const msri_obstacles *all, double h) {
 void msri_discs_moved(const msri_discs *discs, void *room) {
   size_t end = 0;
   const course c = place(discs, room, &end);
-  c.watch.kept->q = NULL;
+  c.lists.kept->q = NULL;
 }
 
 /* ---- Drift and bounce */
 
 /* Where no pair is near a look at velocities is enough. */
 static bool drifts_alone(course *c, double h, const double *u, double *q) {
-  msri_watch *const w = &c->watch;
-  if (!msri_watch_is_idle(w, q)) return false;
+  msri_lists *const w = &c->lists;
+  if (!msri_lists_is_idle(w, q)) return false;
   msri_motion_measure(w->bodies, NULL, u, w->box);
-  if (!msri_watch_foresees(w, h)) return false;
+  if (!msri_lists_foresees(w, h)) return false;
   msri_add_scaled(2 * c->d.n, h, u, q);
-  msri_watch_end(w, q);
+  msri_lists_end(w, q);
   return true;
 }
 
@@ -87,11 +87,11 @@ uint64_t msri_discs_drift(const msri_obstacles *all, double h, const double *u, 
     met = supports->drift(supports->self, d->n, h, u, a, q, v, owed);
   else
     msri_add_scaled(2 * d->n, h, u, q);
-  msri_motion_measure(c.watch.bodies, c.vector, q, c.watch.box);
+  msri_motion_measure(c.lists.bodies, c.vector, q, c.lists.box);
   d->owed = supports->drift ? owed : NULL;
   d->q0 = c.vector, d->q = q, d->v = v;
   d->kick = a, d->unit = h;
-  return met + msri_collide(d, &c.watch, q);
+  return met + msri_collide(d, &c.lists, q);
 }
 
 uint64_t msri_discs_bounce(const msri_obstacles *all, double h, const double *q0, const double *v0,
@@ -103,11 +103,11 @@ uint64_t msri_discs_bounce(const msri_obstacles *all, double h, const double *q0
   double *const kick = c.vector;
   for (size_t i = 0; i < 2 * d->n; i++) kick[i] = v[i] - v0[i];
   if (supports->bounce) met = supports->bounce(supports->self, d->n, h, q0, v0, q, v, owed);
-  msri_motion_measure(c.watch.bodies, q0, q, c.watch.box);
+  msri_motion_measure(c.lists.bodies, q0, q, c.lists.box);
   d->q0 = q0, d->q = q, d->v = v;
   d->kick = kick, d->unit = 1, d->behind = 0.5;
   d->owed = supports->bounce ? owed : NULL;
-  return met + msri_collide(d, &c.watch, NULL);
+  return met + msri_collide(d, &c.lists, NULL);
 }
 
 /* ---- Creation */

@@ -1,6 +1,6 @@
-/* watch.c - lists of the pairs of each body, with a skin (Verlet 1967, Phys. Rev. 159, 98), kept in
- * a pool; see watch.h. */
-#include "contacts/watch.h"
+/* lists.c - lists of the pairs of each body, with a skin (Verlet 1967, Phys. Rev. 159, 98), kept in
+ * a pool; see lists.h. */
+#include "contacts/lists.h"
 
 #include <float.h>
 #include <math.h>
@@ -8,10 +8,10 @@
 
 /* ---- Memory */
 
-msri_watch msri_watch_place(const msri_bodies *bodies, double diameter, const msri_ties *ties,
+msri_lists msri_lists_place(const msri_bodies *bodies, double diameter, const msri_ties *ties,
                             char *block, size_t *end) {
   const size_t n = bodies->n_masses;
-  msri_watch w = {.bodies = bodies, .diameter = diameter};
+  msri_lists w = {.bodies = bodies, .diameter = diameter};
   w.near = msri_near_place(n, diameter, ties, block, end);
   w.kept = msri_near_part(block, end, sizeof *w.kept);
   w.body = msri_near_part(block, end, bodies->n * sizeof *w.body);
@@ -25,7 +25,7 @@ msri_watch msri_watch_place(const msri_bodies *bodies, double diameter, const ms
 
 /* ---- The pool */
 
-static void keep(msri_watch *w, msri_range *range, size_t *used) {
+static void keep(msri_lists *w, msri_range *range, size_t *used) {
   const size_t n = range->end - range->begin;
   if (n > 0) memcpy(w->chosen + *used, w->pool + range->begin, n * sizeof *w->pool);
   *range = (msri_range){*used, *used + n};
@@ -33,7 +33,7 @@ static void keep(msri_watch *w, msri_range *range, size_t *used) {
 }
 
 /* Closes the gaps that lists have left which are no longer good. */
-static void close_gaps(msri_watch *w) {
+static void close_gaps(msri_lists *w) {
   size_t used = 0;
   for (size_t b = 0; b < w->bodies->n; b++) keep(w, &w->body[b].pairs, &used);
   keep(w, &w->kept->outer, &used);
@@ -41,7 +41,7 @@ static void close_gaps(msri_watch *w) {
   w->kept->used = used;
 }
 
-bool msri_watch_store(msri_watch *w, msri_range *range) {
+bool msri_lists_store(msri_lists *w, msri_range *range) {
   const size_t found = w->near.found;
   if (w->kept->used + found > w->near.capacity) close_gaps(w);
   if (w->near.full || w->kept->used + found > w->near.capacity) return false;
@@ -54,20 +54,20 @@ bool msri_watch_store(msri_watch *w, msri_range *range) {
 /* ---- Pairs of one body */
 
 /* Where form changes fast a larger skin holds longer, at the price of more pairs to look at. */
-static double skin_for(const msri_watch *w, const msri_watched *body, double way) {
+static double skin_for(const msri_lists *w, const msri_listed *body, double way) {
   const double most = msri_most_skin * w->diameter, least = msri_least_skin * w->diameter;
   const bool again =
       body->inner.skin > 0 && (double)(w->kept->drifts - body->listed) < msri_many_drifts;
   return msri_max(1.25 * way, again ? msri_min(2 * body->inner.skin, most) : least);
 }
 
-static void list_inner(msri_watch *w, size_t b, const double *q0, double way) {
-  msri_watched *const body = &w->body[b];
+static void list_inner(msri_lists *w, size_t b, const double *q0, double way) {
+  msri_listed *const body = &w->body[b];
   const double skin = skin_for(w, body, way);
   const size_t members = msri_bodies_masses(w->bodies, b, w->near.set);
   msri_near_list_at(&w->near, q0, (w->diameter + 2 * skin) * msri_more, w->near.set, members);
   body->pairs = (msri_range){0, 0};
-  body->inner = (msri_reach){msri_watch_store(w, &body->pairs), skin, 0};
+  body->inner = (msri_reach){msri_lists_store(w, &body->pairs), skin, 0};
   body->listed = w->kept->drifts;
   body->far = 0;
   for (size_t s = w->bodies->first[b]; s < w->bodies->first[b + 1]; s++) {
@@ -81,12 +81,12 @@ static void list_inner(msri_watch *w, size_t b, const double *q0, double way) {
 }
 
 /* How far its masses are from where they would be in the form that it had. */
-static void look_again(msri_watch *w, size_t b, const double *q0) {
+static void look_again(msri_lists *w, size_t b, const double *q0) {
   msri_reach *const inner = &w->body[b].inner;
   if (inner->known) inner->used = msri_motion_change(w->bodies, b, w->at, q0);
 }
 
-static bool cover_inner(msri_watch *w, size_t b, const double *q0, double way) {
+static bool cover_inner(msri_lists *w, size_t b, const double *q0, double way) {
   const msri_reach *inner = &w->body[b].inner;
   if (msri_reach_covers(inner, way)) return true;
   look_again(w, b, q0);
@@ -96,7 +96,7 @@ static bool cover_inner(msri_watch *w, size_t b, const double *q0, double way) {
 
 /* ---- A drift */
 
-void msri_watch_set_ways(msri_watch *w) {
+void msri_lists_set_ways(msri_lists *w) {
   const size_t n = w->bodies->n;
   double mean[2] = {0, 0}, sound = 0;
   for (size_t b = 0; b < n; b++) {
@@ -110,9 +110,9 @@ void msri_watch_set_ways(msri_watch *w) {
   }
 }
 
-void msri_watch_begin(msri_watch *w, const double *q0, const double *q) {
+void msri_lists_begin(msri_lists *w, const double *q0, const double *q) {
   const bool moved = !q || w->kept->q != q;
-  msri_watch_set_ways(w);
+  msri_lists_set_ways(w);
   for (size_t b = 0; b < w->bodies->n; b++) {
     w->body[b].hot = false;
     if (!moved) continue;
@@ -121,18 +121,18 @@ void msri_watch_begin(msri_watch *w, const double *q0, const double *q) {
   }
 }
 
-void msri_watch_cover_ways(msri_watch *w, const double *q0) {
+void msri_lists_cover_ways(msri_lists *w, const double *q0) {
   for (size_t b = 0; b < w->bodies->n; b++) {
     const double spread = w->body[b].motion.spread;
     w->body[b].swift = !(spread <= msri_most_skin * w->diameter) || !cover_inner(w, b, q0, spread);
   }
-  msri_watch_cover_outer(w, q0, 0);
+  msri_lists_cover_outer(w, q0, 0);
 }
 
-bool msri_watch_cover_pushes(msri_watch *w, const double *q0, double most) {
+bool msri_lists_cover_pushes(msri_lists *w, const double *q0, double most) {
   const size_t n = w->bodies->n;
   bool room = true;
-  msri_watch_cover_outer(w, q0, most);
+  msri_lists_cover_outer(w, q0, most);
   for (size_t b = 0; b < n; b++)
     if (w->body[b].hot) w->body[w->body[b].cluster].hot = true;
   for (size_t b = 0; b < n && room; b++) {
@@ -142,10 +142,10 @@ bool msri_watch_cover_pushes(msri_watch *w, const double *q0, double most) {
   return room;
 }
 
-bool msri_watch_is_idle(const msri_watch *w, const double *q) {
+bool msri_lists_is_idle(const msri_lists *w, const double *q) {
   bool idle = w->kept->q == q && w->kept->outer.begin == w->kept->outer.end;
   for (size_t b = 0; b < w->bodies->n && idle; b++) {
-    const msri_watched *body = &w->body[b];
+    const msri_listed *body = &w->body[b];
     idle = body->inner.known && body->pairs.begin == body->pairs.end && !body->swift &&
            (body->outer.known || w->bodies->n == 1);
   }
@@ -153,11 +153,11 @@ bool msri_watch_is_idle(const msri_watch *w, const double *q) {
 }
 
 /* Places are rounded, and ways with them. */
-static double rounding_of(const msri_watched *body) {
+static double rounding_of(const msri_listed *body) {
   return 8 * DBL_EPSILON * (body->far + fabs(body->motion.way[0]) + fabs(body->motion.way[1]));
 }
 
-bool msri_watch_foresees(msri_watch *w, double h) {
+bool msri_lists_foresees(msri_lists *w, double h) {
   const size_t n = w->bodies->n;
   bool good = true;
   for (size_t b = 0; b < n; b++)
@@ -165,9 +165,9 @@ bool msri_watch_foresees(msri_watch *w, double h) {
       const double one = h * w->box[b].low[d], other = h * w->box[b].high[d];
       w->box[b].low[d] = msri_min(one, other), w->box[b].high[d] = msri_max(one, other);
     }
-  msri_watch_set_ways(w);
+  msri_lists_set_ways(w);
   for (size_t b = 0; b < n && good; b++) {
-    msri_watched *const body = &w->body[b];
+    msri_listed *const body = &w->body[b];
     const double rounding = rounding_of(body);
     body->motion.spread += rounding, body->away += rounding;
     good = msri_reach_covers(&body->inner, body->motion.spread) &&
@@ -176,7 +176,7 @@ bool msri_watch_foresees(msri_watch *w, double h) {
   return good;
 }
 
-void msri_watch_end(msri_watch *w, const double *q) {
+void msri_lists_end(msri_lists *w, const double *q) {
   for (size_t b = 0; b < w->bodies->n; b++) {
     w->body[b].inner.used += w->body[b].motion.spread;
     w->body[b].outer.used += w->body[b].away;
