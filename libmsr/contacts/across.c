@@ -63,23 +63,27 @@ static bool boxes_meet(const msri_lists *w, size_t a, size_t b) {
            p->low[1] - q->high[1] > reach || q->low[1] - p->high[1] > reach);
 }
 
-typedef void meeting(msri_lists *w, const double *q0, size_t a, size_t b);
+typedef bool meeting(msri_lists *w, const double *q0, size_t a, size_t b);
 
-static void sweep(msri_lists *w, const double *q0, meeting *act) {
+/* Was there room for all? */
+static bool sweep(msri_lists *w, const double *q0, meeting *act) {
   const size_t n = w->bodies->n;
+  bool room = true;
   sort_bodies(w);
   for (size_t k = 0; k < n; k++) {
     const double end = right(w, w->rank[k]);
     for (size_t l = k + 1; l < n && !(left(w, w->rank[l]) > end); l++)
-      if (boxes_meet(w, w->rank[k], w->rank[l])) act(w, q0, w->rank[k], w->rank[l]);
+      if (boxes_meet(w, w->rank[k], w->rank[l])) room &= act(w, q0, w->rank[k], w->rank[l]);
   }
+  return room;
 }
 
 /* ---- Two bodies whose boxes meet */
 
-static void tighten(msri_lists *w, const double *q0, size_t a, size_t b) {
+static bool tighten(msri_lists *w, const double *q0, size_t a, size_t b) {
   (void)q0;
   w->body[a].outer.known = w->body[b].outer.known = false;
+  return true;
 }
 
 static size_t cluster_of(const msri_lists *w, size_t b) {
@@ -106,24 +110,26 @@ static bool are_swift(const msri_lists *w, size_t a, size_t b) {
   return !(w->body[a].outer.skin <= longest && w->body[b].outer.skin <= longest);
 }
 
-static void list_two(msri_lists *w, const double *q0, size_t a, size_t b) {
+static bool list_two(msri_lists *w, const double *q0, size_t a, size_t b) {
   uint32_t *const set = w->near.set;
-  bool listed = !are_swift(w, a, b);
+  const bool swift = are_swift(w, a, b);
+  bool listed = !swift;
   if (listed) {
     const size_t n_a = choose(w, q0, a, b, set);
     const size_t n_b = n_a > 0 ? choose(w, q0, b, a, set + n_a) : 0;
-    if (n_b == 0) return;
+    if (n_b == 0) return true;
     msri_near_list_between(&w->near, q0, reach_of(w, a, b), set, n_a, set + n_a, n_b);
     listed = msri_lists_store(w, &w->kept->outer);
   }
   if (!listed) w->body[a].swift = w->body[b].swift = true;
   if (!listed || w->near.found > 0) w->body[cluster_of(w, a)].cluster = cluster_of(w, b);
+  return swift || listed;
 }
 
 /* ---- The list */
 
 /* First boxes are widened for many drifts; where then they meet, for few. */
-static void list_all(msri_lists *w, const double *q0, double most) {
+static bool list_all(msri_lists *w, const double *q0, double most) {
   const size_t n = w->bodies->n;
   msri_motion_measure(w->bodies, NULL, q0, w->box);
   w->kept->outer = (msri_range){0, 0};
@@ -136,15 +142,16 @@ static void list_all(msri_lists *w, const double *q0, double most) {
   for (size_t b = 0; b < n; b++)
     if (!w->body[b].outer.known)
       w->body[b].outer = (msri_reach){true, tight(w, msri_max(w->body[b].away, most)), 0};
-  sweep(w, q0, list_two);
+  const bool room = sweep(w, q0, list_two);
   for (size_t b = 0; b < n; b++) w->body[b].cluster = cluster_of(w, b);
   for (size_t b = 0; b < n; b++) w->body[b].outer.known = !w->body[b].swift;
+  return room;
 }
 
-void msri_lists_cover_outer(msri_lists *w, const double *q0, double most) {
+bool msri_lists_cover_outer(msri_lists *w, const double *q0, double most) {
   bool good = true;
-  if (w->bodies->n == 1) return;
+  if (w->bodies->n == 1) return true;
   for (size_t b = 0; b < w->bodies->n; b++)
     good &= msri_reach_covers(&w->body[b].outer, msri_max(w->body[b].away, most));
-  if (!good) list_all(w, q0, most);
+  return good || list_all(w, q0, most);
 }

@@ -61,9 +61,8 @@ static double skin_for(const msri_lists *w, const msri_listed *body, double way)
   return msri_max(1.25 * way, again ? msri_min(2 * body->inner.skin, most) : least);
 }
 
-static void list_inner(msri_lists *w, size_t b, const double *q0, double way) {
+static void list_inner(msri_lists *w, size_t b, const double *q0, double skin) {
   msri_listed *const body = &w->body[b];
-  const double skin = skin_for(w, body, way);
   const size_t members = msri_bodies_masses(w->bodies, b, w->near.set);
   msri_near_list_at(&w->near, q0, (w->diameter + 2 * skin) * msri_more, w->near.set, members);
   body->pairs = (msri_range){0, 0};
@@ -86,12 +85,22 @@ static void look_again(msri_lists *w, size_t b, const double *q0) {
   if (inner->known) inner->used = msri_motion_change(w->bodies, b, w->at, q0);
 }
 
+/* False: there's no room for the pairs. */
 static bool cover_inner(msri_lists *w, size_t b, const double *q0, double way) {
   const msri_reach *inner = &w->body[b].inner;
   if (msri_reach_covers(inner, way)) return true;
   look_again(w, b, q0);
-  if (!msri_reach_covers(inner, way)) list_inner(w, b, q0, way);
+  if (!msri_reach_covers(inner, way)) list_inner(w, b, q0, skin_for(w, &w->body[b], way));
   return inner->known;
+}
+
+/* All lists go, for others to have room. */
+static void forget(msri_lists *w) {
+  for (size_t b = 0; b < w->bodies->n; b++) {
+    w->body[b].inner.known = w->body[b].outer.known = false;
+    w->body[b].pairs = (msri_range){0, 0};
+  }
+  w->kept->outer = (msri_range){0, 0}, w->kept->used = 0;
 }
 
 /* ---- A drift */
@@ -121,24 +130,41 @@ void msri_lists_begin(msri_lists *w, const double *q0, const double *q) {
   }
 }
 
-void msri_lists_cover_ways(msri_lists *w, const double *q0) {
+static bool cover_ways(msri_lists *w, const double *q0) {
+  bool room = true;
   for (size_t b = 0; b < w->bodies->n; b++) {
     const double spread = w->body[b].motion.spread;
-    w->body[b].swift = !(spread <= msri_most_skin * w->diameter) || !cover_inner(w, b, q0, spread);
+    const bool slow = spread <= msri_most_skin * w->diameter;
+    w->body[b].swift = !slow || !cover_inner(w, b, q0, spread);
+    room &= !slow || !w->body[b].swift;
   }
-  msri_lists_cover_outer(w, q0, 0);
+  return msri_lists_cover_outer(w, q0, 0) && room;
+}
+
+void msri_lists_cover_ways(msri_lists *w, const double *q0) {
+  if (cover_ways(w, q0)) return;
+  forget(w);
+  cover_ways(w, q0);
+}
+
+/* So are swift ones: for all that is known. */
+static void warm_clusters(msri_lists *w) {
+  for (size_t b = 0; b < w->bodies->n; b++)
+    if (w->body[b].hot || w->body[b].swift) w->body[w->body[b].cluster].hot = true;
+  for (size_t b = 0; b < w->bodies->n; b++) w->body[b].hot = w->body[w->body[b].cluster].hot;
 }
 
 bool msri_lists_cover_pushes(msri_lists *w, const double *q0, double most) {
-  const size_t n = w->bodies->n;
-  bool room = true;
-  msri_lists_cover_outer(w, q0, most);
-  for (size_t b = 0; b < n; b++)
-    if (w->body[b].hot) w->body[w->body[b].cluster].hot = true;
-  for (size_t b = 0; b < n && room; b++) {
-    w->body[b].hot = w->body[w->body[b].cluster].hot;
-    room = !w->body[b].swift && (!w->body[b].hot || cover_inner(w, b, q0, most));
-  }
+  bool room = msri_lists_cover_outer(w, q0, most);
+  warm_clusters(w);
+  for (size_t b = 0; b < w->bodies->n; b++)
+    room &= !w->body[b].swift && (!w->body[b].hot || cover_inner(w, b, q0, most));
+  if (room) return true;
+  forget(w);
+  room = msri_lists_cover_outer(w, q0, most);
+  warm_clusters(w);
+  for (size_t b = 0; b < w->bodies->n && room; b++)
+    if (w->body[b].hot) list_inner(w, b, q0, most), room = w->body[b].inner.known;
   return room;
 }
 

@@ -93,8 +93,9 @@ static inline bool msri_reach_covers(const msri_reach *r, double way) {
   return r->known && r->used + way <= r->skin;
 }
 
-/* Makes the list of pairs of two bodies good, as above; ways are as long as `most` or longer. */
-void msri_lists_cover_outer(msri_lists *lists, const double *q0, double most);
+/* Makes the list of pairs of two bodies good, as above; ways are as long as `most` or longer.
+ * False: there's no room for them all. */
+bool msri_lists_cover_outer(msri_lists *lists, const double *q0, double most);
 
 /* Skins are no smaller, and, but for long ways, no larger than that, in diameters; with less than
  * half of what is left of a square's diagonal a lattice at rest has no pairs. And lists are made
