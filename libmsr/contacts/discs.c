@@ -21,19 +21,19 @@ struct msri_discs {
 /* ---- Memory of a state: a vector, the zones, what is known of who may meet */
 
 /* A drift, and which pairs may meet in it. */
-typedef struct course {
+typedef struct work {
   msri_drift d;
   msri_lists lists;
   double *vector; /* [2n] */
-} course;
+} work;
 
-static course place(const msri_discs *discs, char *room, size_t *end) {
+static work place(const msri_discs *discs, char *room, size_t *end) {
   const size_t n = discs->n;
-  course c = {.d = {.n = n,
-                    .m = discs->m,
-                    .m_stride = discs->m_stride,
-                    .diameter = discs->diameter,
-                    .restitution = discs->restitution}};
+  work c = {.d = {.n = n,
+                  .m = discs->m,
+                  .m_stride = discs->m_stride,
+                  .diameter = discs->diameter,
+                  .restitution = discs->restitution}};
   c.vector = msri_near_part(room, end, 2 * n * sizeof *c.vector);
   c.d.zone = msri_near_part(room, end, n * sizeof *c.d.zone);
   c.d.next = msri_near_part(room, end, n * sizeof *c.d.next);
@@ -49,23 +49,23 @@ size_t msri_discs_room(const msri_discs *discs) {
   return end;
 }
 
-static course begin(const msri_obstacles *all, double h) {
+static work begin(const msri_obstacles *all, double h) {
   size_t end = 0;
-  course c = place(all->discs, all->room, &end);
+  work c = place(all->discs, all->room, &end);
   c.d.supports = all->supports, c.d.h = h;
   return c;
 }
 
 void msri_discs_moved(const msri_discs *discs, void *room) {
   size_t end = 0;
-  const course c = place(discs, room, &end);
+  const work c = place(discs, room, &end);
   c.lists.kept->q = NULL;
 }
 
 /* ---- Drift and bounce */
 
 /* Where no pair is near a look at velocities is enough. */
-static bool drifts_alone(course *c, double h, const double *u, double *q) {
+static bool drifts_alone(work *c, double h, const double *u, double *q) {
   msri_lists *const w = &c->lists;
   if (!msri_lists_is_idle(w, q)) return false;
   msri_motion_measure(w->bodies, NULL, u, w->box);
@@ -79,7 +79,7 @@ uint64_t msri_discs_drift(const msri_obstacles *all, double h, const double *u, 
                           double *q, double *v, double *owed) {
   uint64_t met = 0;
   const msri_contact *supports = all->supports;
-  course c = begin(all, h);
+  work c = begin(all, h);
   msri_drift *const d = &c.d;
   if (!supports->drift && drifts_alone(&c, h, u, q)) return 0;
   memcpy(c.vector, q, 2 * d->n * sizeof *q);
@@ -98,7 +98,7 @@ uint64_t msri_discs_bounce(const msri_obstacles *all, double h, const double *q0
                            double *q, double *v, double *owed) {
   uint64_t met = 0;
   const msri_contact *supports = all->supports;
-  course c = begin(all, h);
+  work c = begin(all, h);
   msri_drift *const d = &c.d;
   double *const kick = c.vector;
   for (size_t i = 0; i < 2 * d->n; i++) kick[i] = v[i] - v0[i];
