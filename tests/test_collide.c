@@ -711,8 +711,10 @@ static finder finder_of(size_t n, const msr_springs *springs) {
   finder f = {.n = n, .q0 = zeroed(2 * n, sizeof(double)), .q = zeroed(2 * n, sizeof(double))};
   const msr_view start = {.n = n, .x = f.q0, .y = f.q0 + n, .springs = springs};
   must(msri_ties_create(&start, 0, &f.ties, &why)); // nobody is closer than 0
-  f.block = zeroed(1, msri_near_bytes(n));
-  f.near = msri_near_place(n, 1, &f.ties, f.block);
+  size_t size = 0, end = 0;
+  msri_near_place(n, 1, &f.ties, NULL, &size);
+  f.block = zeroed(1, size);
+  f.near = msri_near_place(n, 1, &f.ties, f.block, &end);
   return f;
 }
 
@@ -735,6 +737,20 @@ static bool ways_meet(const void *self, const msri_ways *w, size_t i, size_t j) 
   return hypot(rx + t * dx, ry + t * dy) < 1;
 }
 
+/* All masses, to near.set. */
+static uint32_t *all_of(finder *f) {
+  for (size_t i = 0; i < f->n; i++) f->near.set[i] = (uint32_t)i;
+  return f->near.set;
+}
+
+static void list_ways(finder *f) {
+  const msri_meets meets = {ways_meet, &f->n};
+  msri_near_list_ways(&f->near, &(msri_ways){f->q0, f->q}, 0.3, &meets, all_of(f), f->n);
+  msri_pair *room = zeroed(f->near.found, sizeof *room);
+  msri_near_order(f->near.pair, f->near.found, room);
+  free(room);
+}
+
 /* The list is that of all pairs, in order. */
 static void expect_all(const finder *f, bool ways, double reach) {
   const msri_ways w = {f->q0, f->q};
@@ -743,11 +759,11 @@ static void expect_all(const finder *f, bool ways, double reach) {
     for (size_t j = i + 1; j < f->n; j++) {
       const bool near = ways ? ways_meet(&f->n, &w, i, j) : distance_of(f->q0, f->n, i, j) <= reach;
       if (!near || msri_ties_tied(&f->ties, i, j)) continue;
-      assert_true(k < f->near.list->n);
+      assert_true(k < f->near.found);
       assert_true(f->near.pair[k].i == i && f->near.pair[k].j == j);
       k++;
     }
-  assert_int_equal(k, f->near.list->n);
+  assert_int_equal(k, f->near.found);
 }
 
 /* Against all pairs: scattered, in rows and heaps, far away from each other, at rest and on ways of
@@ -771,9 +787,9 @@ static void the_search_finds_every_pair(void **unused) {
       if (random_below(&dice, 60) == 0) f.q0[i] *= pow(10, uniform(&dice, 0, 300));
       f.q[i] = f.q0[i] + common + (rests ? 0 : uniform(&dice, -speed, speed));
     }
-    msri_near_list_at(&f.near, f.q0, 0.2);
+    msri_near_list_at(&f.near, f.q0, 1.4, all_of(&f), n);
     expect_all(&f, false, 1.4);
-    msri_near_list_ways(&f.near, &(msri_ways){f.q0, f.q}, 0.3, &(msri_meets){ways_meet, &n});
+    list_ways(&f);
     expect_all(&f, true, 0);
     free_finder(&f);
   }
@@ -790,10 +806,10 @@ static void a_body_has_few_pairs(void **unused) {
     f.q0[i] = (double)(i % side), f.q0[n + i] = (double)(i / side);
     f.q[i] = f.q0[i] + 1e5, f.q[n + i] = f.q0[n + i] - 3e4;
   }
-  msri_near_list_at(&f.near, f.q0, 0.19); // 1.38: sides, no diagonals
-  assert_int_equal(f.near.list->n, 2 * side * (side - 1));
-  msri_near_list_ways(&f.near, &(msri_ways){f.q0, f.q}, 0.3, &(msri_meets){ways_meet, &n});
-  assert_int_equal(f.near.list->n, 0);
+  msri_near_list_at(&f.near, f.q0, 1.38, all_of(&f), n); // sides, no diagonals
+  assert_int_equal(f.near.found, 2 * side * (side - 1));
+  list_ways(&f);
+  assert_int_equal(f.near.found, 0);
   free_finder(&f);
 }
 

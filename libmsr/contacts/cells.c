@@ -24,10 +24,19 @@ static size_t msri_cell_bucket(const msri_near *near, msri_cell c) {
   return (size_t)((uint64_t)c.x + near->row * (uint64_t)c.y) & (near->buckets - 1);
 }
 
+/* A column of cells goes through all buckets, too: a row of them is odd. */
+static void choose_buckets(msri_near *near, size_t members) {
+  near->buckets = 16, near->row = 1;
+  while (near->buckets < members) near->buckets *= 2;
+  while (near->row * near->row < near->buckets) near->row *= 2;
+  near->row += 1;
+}
+
 void msri_cells_sort(msri_near *near, const double *q, double size, const uint32_t *set,
                      size_t members) {
   uint32_t *const bucket = near->bucket;
   uint32_t sum = 0;
+  choose_buckets(near, members);
   memset(bucket, 0, (near->buckets + 1) * sizeof *bucket);
   for (size_t k = 0; k < members; k++)
     bucket[msri_cell_bucket(near, msri_cell_at(q, near->n, set[k], size))]++;
@@ -45,9 +54,9 @@ void msri_cells_sort(msri_near *near, const double *q, double size, const uint32
 void msri_cells_append(msri_near *near, size_t a, size_t b) {
   const size_t i = a < b ? a : b, j = a < b ? b : a;
   if (msri_ties_tied(near->ties, i, j)) return;
-  near->list->full |= near->list->n == near->capacity;
-  if (near->list->full) return;
-  near->pair[near->list->n++] = (msri_pair){(uint32_t)i, (uint32_t)j};
+  near->full |= near->found == near->capacity;
+  if (near->full) return;
+  near->pair[near->found++] = (msri_pair){(uint32_t)i, (uint32_t)j};
 }
 
 msri_three msri_cells_three(const msri_near *near, msri_cell first) {
@@ -62,14 +71,15 @@ static void look_among(msri_near *near, const msri_search *s, size_t i, uint32_t
   const double *x = s->q0, *y = x + near->n, reach2 = s->reach * s->reach;
   for (uint32_t k = begin; k < end; k++) {
     const size_t j = near->sorted[k];
-    if (j > i && msri_squared(x[j] - x[i], y[j] - y[i]) <= reach2 && msri_search_wants(s, i, j))
+    if ((s->between || j > i) && msri_squared(x[j] - x[i], y[j] - y[i]) <= reach2 &&
+        msri_search_wants(s, i, j))
       msri_cells_append(near, i, j);
   }
 }
 
 void msri_cells_look_around(msri_near *near, const msri_search *s, size_t i) {
   const msri_cell at = msri_cell_at(s->q0, near->n, i, s->size);
-  for (int64_t cy = at.y - 1; cy <= at.y + 1 && !near->list->full; cy++) {
+  for (int64_t cy = at.y - 1; cy <= at.y + 1 && !near->full; cy++) {
     const msri_cell first = {at.x - 1, cy};
     const msri_three t = msri_cells_three(near, first);
     look_among(near, s, i, t.begin, t.end);

@@ -16,6 +16,7 @@ msri_cell msri_cell_at(const double *q, size_t n, size_t i, double size);
 typedef struct msri_search {
   const double *q0;
   double size, reach; /* of a cell, of a pair [px] */
+  bool between;       /* of two sets: of a pair either may be the one sorted */
   const msri_ways *ways;
   const msri_meets *meets; /* NULL: all within reach */
 } msri_search;
@@ -37,14 +38,16 @@ typedef struct msri_three {
 
 msri_three msri_cells_three(const msri_near *near, msri_cell first);
 
-/* Sorts the masses set[0 .. members-1] at q into buckets. */
+/* Sorts the masses set[0 .. members-1] at q into buckets, as many as there are such masses or more.
+ */
 void msri_cells_sort(msri_near *near, const double *q, double size, const uint32_t *set,
                      size_t members);
 
 /* Appends the pair, if it isn't tied, to the list. */
 void msri_cells_append(msri_near *near, size_t a, size_t b);
 
-/* Appends the pairs of mass i with those of a higher number around it. */
+/* Appends the pairs of mass i with those around it that were sorted: of a higher number only, if
+ * not `between`. */
 void msri_cells_look_around(msri_near *near, const msri_search *s, size_t i);
 
 #endif

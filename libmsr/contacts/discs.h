@@ -18,6 +18,10 @@ void msri_discs_free(msri_discs *discs);
 size_t msri_discs_bytes(const msri_discs *discs);
 size_t msri_discs_room(const msri_discs *discs);
 
+/* Masses may be elsewhere than where the last drift left them, unless its places come by another
+ * address. */
+void msri_discs_moved(const msri_discs *discs, void *room);
+
 /* All that may be met. */
 typedef struct msri_obstacles {
   const msri_discs *discs;

@@ -1,53 +1,27 @@
-/* near.c - neighbours at rest: a list of all pairs within the reach of a skin (Allen & Tildesley
- * 1987, Computer Simulation of Liquids, 5.3: cells and a list with a skin). */
+/* near.c - neighbours at rest, by cells (Allen & Tildesley 1987, Computer Simulation of Liquids,
+ * 5.3), and the order of pairs. */
 #include "contacts/cells.h"
 
 #include <string.h>
 
 /* ---- Memory */
 
-enum { ALIGNMENT = 16, PAIRS_PER_MASS = 8, LEAST_PAIRS = 4096 };
+enum { ALIGNMENT = 16, PAIRS_PER_MASS = 8, LEAST_PAIRS = 4096, MORE_BUCKETS = 17 };
 
-static size_t buckets_for(size_t n) {
-  size_t buckets = 16;
-  while (buckets < n) buckets *= 2;
-  return buckets;
-}
-
-/* Reserves a part of the block; `block` may be NULL, to count only. */
-static void *part(char *block, size_t *end, size_t bytes) {
+void *msri_near_part(char *block, size_t *end, size_t bytes) {
   char *const begin = block ? block + *end : NULL;
-  *end += (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+  *end += msri_round_up(bytes, ALIGNMENT);
   return begin;
 }
 
-static msri_near place(size_t n, char *block, size_t *end) {
-  msri_near near = {.n = n, .buckets = buckets_for(n)};
+msri_near msri_near_place(size_t n, double diameter, const msri_ties *ties, char *block,
+                          size_t *end) {
+  msri_near near = {.n = n, .diameter = diameter, .ties = ties};
   near.capacity = PAIRS_PER_MASS * n + LEAST_PAIRS;
-  near.row = 1;
-  while (near.row * near.row < near.buckets) near.row *= 2;
-  near.row += 1; // odd: a column of cells goes through all buckets, too
-  near.list = part(block, end, sizeof *near.list);
-  near.at = part(block, end, 2 * n * sizeof *near.at);
-  near.pair = part(block, end, near.capacity * sizeof *near.pair);
-  near.close = part(block, end, near.capacity * sizeof *near.close);
-  near.bucket = part(block, end, (near.buckets + 1) * sizeof *near.bucket);
-  near.sorted = part(block, end, n * sizeof *near.sorted);
-  near.set = part(block, end, n * sizeof *near.set);
-  return near;
-}
-
-size_t msri_near_bytes(size_t n) {
-  size_t end = 0;
-  place(n, NULL, &end);
-  return end;
-}
-
-msri_near msri_near_place(size_t n, double diameter, const msri_ties *ties, void *block) {
-  size_t end = 0;
-  msri_near near = place(n, block, &end);
-  near.diameter = diameter;
-  near.ties = ties;
+  near.pair = msri_near_part(block, end, near.capacity * sizeof *near.pair);
+  near.bucket = msri_near_part(block, end, (2 * n + MORE_BUCKETS) * sizeof *near.bucket);
+  near.sorted = msri_near_part(block, end, n * sizeof *near.sorted);
+  near.set = msri_near_part(block, end, n * sizeof *near.set);
   return near;
 }
 
@@ -63,28 +37,51 @@ static void order_few(msri_pair *pair, size_t begin, size_t end) {
   }
 }
 
-void msri_near_list_at(msri_near *near, const double *q, double skin) {
-  const double reach = near->diameter + 2 * skin;
+void msri_near_list_at(msri_near *near, const double *q, double reach, const uint32_t *set,
+                       size_t members) {
   const msri_search s = {.q0 = q, .size = reach, .reach = reach};
-  *near->list = (msri_near_list){.skin = skin};
-  for (size_t i = 0; i < near->n; i++) near->set[i] = (uint32_t)i;
-  msri_cells_sort(near, q, s.size, near->set, near->n);
-  for (size_t i = 0; i < near->n; i++) {
-    const size_t begin = near->list->n;
-    msri_cells_look_around(near, &s, i);
-    order_few(near->pair, begin, near->list->n);
+  near->found = 0, near->full = false;
+  msri_cells_sort(near, q, s.size, set, members);
+  for (size_t k = 0; k < members; k++) {
+    const size_t begin = near->found;
+    msri_cells_look_around(near, &s, set[k]);
+    order_few(near->pair, begin, near->found);
   }
-  memcpy(near->at, q, 2 * near->n * sizeof *q);
-  near->list->valid = !near->list->full;
 }
 
-void msri_near_choose(msri_near *near, const double *q, double most) {
-  const double *x = q, *y = q + near->n, reach = (near->diameter + 2 * most) * (1 + 1e-9);
-  size_t n = 0;
-  for (size_t k = 0; k < near->list->n; k++) {
-    const msri_pair p = near->pair[k];
-    near->close[n] = p;
-    n += msri_squared(x[p.j] - x[p.i], y[p.j] - y[p.i]) <= reach * reach;
+void msri_near_list_between(msri_near *near, const double *q, double reach, const uint32_t *a,
+                            size_t n_a, const uint32_t *b, size_t n_b) {
+  const msri_search s = {.q0 = q, .size = reach, .reach = reach, .between = true};
+  near->found = 0, near->full = false;
+  msri_cells_sort(near, q, s.size, a, n_a);
+  for (size_t k = 0; k < n_b; k++) msri_cells_look_around(near, &s, b[k]);
+}
+
+/* ---- Order: merges of what is ascending by itself (Knuth, The Art of Computer Programming 3,
+ * 5.2.4) */
+
+static size_t ascending_from(const msri_pair *pair, size_t at, size_t n) {
+  while (at + 1 < n && !msri_pair_precedes(pair[at + 1], pair[at])) at++;
+  return at + 1;
+}
+
+static void merge(const msri_pair *from, size_t begin, size_t middle, size_t end, msri_pair *to) {
+  size_t a = begin, b = middle;
+  for (size_t k = begin; k < end; k++) {
+    const bool second = a == middle || (b < end && msri_pair_precedes(from[b], from[a]));
+    to[k] = from[second ? b++ : a++];
   }
-  near->list->n_close = n;
+}
+
+void msri_near_order(msri_pair *pair, size_t n, msri_pair *room) {
+  for (bool done = n == 0; !done;) {
+    for (size_t begin = 0; begin < n;) {
+      const size_t middle = ascending_from(pair, begin, n);
+      const size_t end = middle < n ? ascending_from(pair, middle, n) : n;
+      done = begin == 0 && end == n;
+      merge(pair, begin, middle, end, room);
+      begin = end;
+    }
+    memcpy(pair, room, n * sizeof *pair);
+  }
 }

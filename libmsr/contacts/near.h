@@ -1,5 +1,5 @@
-/* near.h - which masses may meet as discs of one diameter: O(N) searches over memory that is the
- * state's. Pairs tied by a spring never count. */
+/* near.h - which of some masses may meet as discs of one diameter: O(N) searches over memory that
+ * is the state's. Pairs tied by a spring never count. */
 #ifndef MSRI_NEAR_H
 #define MSRI_NEAR_H
 
@@ -12,29 +12,20 @@ typedef struct msri_pair {
   uint32_t i, j; /* i < j */
 } msri_pair;
 
-/* What is kept from one step to the next: the pairs within reach of each other where masses were
- * when they were listed. */
-typedef struct msri_near_list {
-  bool valid;
-  bool full; /* there are more pairs than there is room for */
-  size_t n, n_close;
-  double skin; /* pairs closer than the diameter and twice this are listed [px] */
-} msri_near_list;
-
+/* A search, and its memory. */
 typedef struct msri_near {
   size_t n; /* masses */
   double diameter;
   const msri_ties *ties;
-  size_t buckets;  /* a power of 2 */
-  size_t row;      /* how far the bucket of the cell above is */
-  size_t capacity; /* of pairs */
-  msri_near_list *list;
-  double *at;       /* [2n]: where masses were */
-  msri_pair *pair;  /* [capacity]; in ascending order */
-  msri_pair *close; /* [capacity]; some of them */
-  uint32_t *bucket; /* [buckets + 1]: where it begins in sorted */
+  size_t capacity;  /* of pairs */
+  size_t found;     /* pairs */
+  bool full;        /* there are more of them than there is room for */
+  size_t buckets;   /* in use, a power of 2 */
+  size_t row;       /* how far the bucket of the cell above is */
+  msri_pair *pair;  /* [capacity]: those found */
+  uint32_t *bucket; /* [2 n + 17]: where it begins in sorted */
   uint32_t *sorted; /* [n] */
-  uint32_t *set;    /* [n] */
+  uint32_t *set;    /* [n]: for the caller */
 } msri_near;
 
 /* Straight ways from q0 to q. [2n] */
@@ -42,28 +33,32 @@ typedef struct msri_ways {
   const double *q0, *q;
 } msri_ways;
 
-/* Half of what is left of a square's diagonal, in diameters: with less skin than this a lattice at
- * rest has no pairs. */
-static const double msri_near_skin = 0.2;
+/* Reserves an aligned part of a block; `block` may be NULL, to count only. */
+void *msri_near_part(char *block, size_t *end, size_t bytes);
 
-/* Bytes for so many masses; and the parts of such a block, aligned as malloc's, zeroed at first. */
-size_t msri_near_bytes(size_t n);
-msri_near msri_near_place(size_t n, double diameter, const msri_ties *ties, void *block);
+/* The parts of a block from *end on, which becomes what is after them. */
+msri_near msri_near_place(size_t n, double diameter, const msri_ties *ties, char *block,
+                          size_t *end);
 
-/* Lists all pairs within reach, masses being at q [2n]: none is missing for straight ways that
- * begin and end within the skin of q. */
-void msri_near_list_at(msri_near *near, const double *q, double skin);
+/* Lists all pairs of set[members], ascending, that are within `reach` of each other at q [2n]. */
+void msri_near_list_at(msri_near *near, const double *q, double reach, const uint32_t *set,
+                       size_t members);
 
-/* Chooses from the list those pairs that may meet in ways no longer than `most` from q [2n]. */
-void msri_near_choose(msri_near *near, const double *q, double most);
+/* Lists all pairs of one mass of a and one of b, in no order. */
+void msri_near_list_between(msri_near *near, const double *q, double reach, const uint32_t *a,
+                            size_t n_a, const uint32_t *b, size_t n_b);
 
-/* Makes a list, which won't last, of those pairs that `meet`, on ways of any length: those shorter
- * than `slow` are found as pairs that rest. */
+/* Lists those pairs that `meet`, on ways of any length, of set[members], in no order: those shorter
+ * than `slow` are found as pairs that rest. Masses whose way isn't finite are left out; what is in
+ * the set afterwards is undefined. */
 typedef struct msri_meets {
   bool (*meet)(const void *self, const msri_ways *ways, size_t i, size_t j);
   const void *self;
 } msri_meets;
 void msri_near_list_ways(msri_near *near, const msri_ways *ways, double slow,
-                         const msri_meets *meets);
+                         const msri_meets *meets, uint32_t *set, size_t members);
+
+/* Puts pairs in ascending order; room [n] is for use. */
+void msri_near_order(msri_pair *pair, size_t n, msri_pair *room);
 
 #endif

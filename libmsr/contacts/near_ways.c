@@ -119,7 +119,7 @@ static void walk_through(msri_near *near, const msri_search *s, const frame *f, 
     return;
   }
   const size_t steps = (size_t)w.steps;
-  for (size_t k = 0; k <= steps && !near->list->full; k++) look_from(near, s, &w, (double)k);
+  for (size_t k = 0; k <= steps && !near->full; k++) look_from(near, s, &w, (double)k);
 }
 
 /* Looks at those that rest in a frame among themselves, and at all others on their way through it.
@@ -128,54 +128,38 @@ static size_t look_in(msri_near *near, frame *f, const msri_ways *ways, const ms
                       uint32_t *set, size_t members) {
   const double reach = near->diameter + f->radius;
   const size_t rest = divide(near, f, ways, set, members, reach);
-  const msri_search still = {ways->q0, 2 * reach, near->diameter + 2 * f->radius, ways, meets};
-  const msri_search passing = {ways->q0, 2 * reach, reach, ways, meets};
+  const msri_search still = {.q0 = ways->q0,
+                             .size = 2 * reach,
+                             .reach = near->diameter + 2 * f->radius,
+                             .ways = ways,
+                             .meets = meets};
+  const msri_search passing = {
+      .q0 = ways->q0, .size = 2 * reach, .reach = reach, .ways = ways, .meets = meets};
   msri_cells_sort(near, ways->q0, still.size, set, rest);
   for (size_t k = 0; k < rest; k++) msri_cells_look_around(near, &still, set[k]);
   for (size_t k = rest; k < members; k++) walk_through(near, &passing, f, set[k], set, rest);
   return rest;
 }
 
-/* ---- Order */
-
-static void sink(msri_pair *heap, size_t n, size_t at) {
-  for (size_t child; (child = 2 * at + 1) < n; at = child) {
-    if (child + 1 < n && msri_pair_precedes(heap[child], heap[child + 1])) child++;
-    if (!msri_pair_precedes(heap[at], heap[child])) return;
-    const msri_pair swap = heap[at];
-    heap[at] = heap[child], heap[child] = swap;
-  }
-}
-
-static void order(msri_pair *pair, size_t n) {
-  for (size_t at = n / 2; at-- > 0;) sink(pair, n, at);
-  for (size_t left = n; left-- > 1;) {
-    const msri_pair swap = pair[0];
-    pair[0] = pair[left], pair[left] = swap;
-    sink(pair, left, 0);
-  }
-}
+/* ---- The search */
 
 static bool is_finite(const msri_ways *w, size_t n, size_t i) {
   return isfinite(w->q[i] - w->q0[i]) && isfinite(w->q[n + i] - w->q0[n + i]);
 }
 
 void msri_near_list_ways(msri_near *near, const msri_ways *ways, double slow,
-                         const msri_meets *meets) {
-  const size_t n = near->n;
-  uint32_t *set = near->set;
-  size_t members = 0;
-  for (size_t i = 0; i < n; i++)
-    if (is_finite(ways, n, i)) set[members++] = (uint32_t)i;
-  *near->list = (msri_near_list){0};
+                         const msri_meets *meets, uint32_t *set, size_t members) {
+  size_t left = 0;
+  for (size_t k = 0; k < members; k++)
+    if (is_finite(ways, near->n, set[k])) set[left++] = set[k];
+  near->found = 0, near->full = false;
   frame f = {.radius = slow};
-  while (members > 0) {
-    const size_t rest = look_in(near, &f, ways, meets, set, members);
-    set += rest, members -= rest;
-    if (members == 0) break;
-    const size_t i = set[members / 2];
-    f.x = ways->q[i] - ways->q0[i], f.y = ways->q[n + i] - ways->q0[n + i];
+  while (left > 0) {
+    const size_t rest = look_in(near, &f, ways, meets, set, left);
+    set += rest, left -= rest;
+    if (left == 0) break;
+    const size_t i = set[left / 2];
+    f.x = ways->q[i] - ways->q0[i], f.y = ways->q[near->n + i] - ways->q0[near->n + i];
     f.radius *= 2;
   }
-  order(near->pair, near->list->n);
 }

@@ -185,17 +185,22 @@ void msri_state_keep(const msr_state *state, double *kept) {
   memcpy(kept + n, state->v, n * sizeof *kept);
 }
 
+/* q may be elsewhere than where the last drift left it. */
+static void moved(msr_state *state) {
+  state->fresh = false;
+  state->known.q = NULL;
+  if (state->plan->discs) msri_discs_moved(state->plan->discs, state->discs);
+}
+
 void msri_state_put_back(msr_state *state, const double *kept) {
   const size_t n = 2 * state->plan->figures.masses;
   memcpy(state->q, kept, n * sizeof *kept);
   memcpy(state->v, kept + n, n * sizeof *kept);
-  state->fresh = false;
-  state->known.q = NULL;
+  moved(state);
 }
 
 void msri_state_touched(msr_state *state) {
-  state->fresh = false;
-  state->known.q = NULL;
+  moved(state);
   state->guard.begun = state->care.begun = state->care.on = false;
 }
 
