@@ -11,6 +11,7 @@
 #include "contacts/discs.h"
 
 #include "contacts/drift.h"
+#include "contacts/flock.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -260,34 +261,35 @@ static course begin(const msri_discs *discs, const msri_contact *supports, void 
 /* ---- Drift and bounce */
 
 uint64_t msri_discs_drift(const msri_obstacles *all, double h, const double *u, const double *a,
-                          double *q, double *v, double *owed) {
+                          double *q, double *v, msri_debts *debts) {
   uint64_t met = 0;
   const msri_contact *supports = all->supports;
   course c = begin(all->discs, supports, all->room, h);
   msri_drift *d = &c.d;
   memcpy(all->room, q, 2 * d->n * sizeof *q);
+  const msri_flock flock = msri_flock_of(d->n, u, a, q, v);
   if (supports->drift)
-    met = supports->drift(supports->self, d->n, h, u, a, q, v, owed);
+    met = supports->drift(supports->self, h, &flock, debts);
   else
     for (size_t i = 0; i < 2 * d->n; i++) q[i] += h * u[i];
   d->q0 = all->room, d->q = q, d->v = v;
   d->kick = a, d->unit = h;
-  d->owed = supports->drift ? owed : NULL;
+  d->debts = supports->drift ? debts : NULL;
   return met + collide(&c);
 }
 
 uint64_t msri_discs_bounce(const msri_obstacles *all, double h, const double *q0, const double *v0,
-                           double *q, double *v, double *owed) {
+                           double *q, double *v, msri_debts *debts) {
   uint64_t met = 0;
   const msri_contact *supports = all->supports;
   course c = begin(all->discs, supports, all->room, h);
   msri_drift *d = &c.d;
   double *const kick = all->room;
   for (size_t i = 0; i < 2 * d->n; i++) kick[i] = v[i] - v0[i];
-  if (supports->bounce) met = supports->bounce(supports->self, d->n, h, q0, v0, q, v, owed);
+  if (supports->bounce) met = supports->bounce(supports->self, d->n, h, q0, v0, q, v, debts);
   d->q0 = q0, d->q = q, d->v = v;
   d->kick = kick, d->unit = 1, d->behind = 0.5;
-  d->owed = supports->bounce ? owed : NULL;
+  d->debts = supports->bounce ? debts : NULL;
   return met + collide(&c);
 }
 

@@ -93,7 +93,7 @@ static void redirect(const msri_drift *d, size_t i, msri_vec way) {
 
 static void speed_up(const msri_drift *d, size_t i, double x, double y) {
   d->v[i] += x, d->v[d->n + i] += y;
-  if (d->owed) d->owed[i] = d->owed[d->n + i] = 0;
+  if (d->debts) msri_debts_cancel(d->debts, i);
 }
 
 /* Supports stop a mass that was pushed. */

@@ -20,7 +20,7 @@ typedef struct msri_drift {
   double unit, behind; /* v is ahead of the velocity in the middle by that share of it */
   bool rests;          /* slow contacts end without a relative velocity, see drift.c */
   signed char *held;   /* [2n]: a support stopped it on its way up, 1, or down, -1 */
-  double *owed;        /* [2n] as in contact.h; may be NULL */
+  msri_debts *debts;   /* of the supports; may be NULL */
   double apart;        /* by which discs that overlap may part [px] */
   double most;         /* how far one may be pushed [px] */
   uint32_t *zone, *next; /* [n]: the zone that a mass is of, and the next mass of it */

@@ -50,8 +50,7 @@ static void count_memory(msr_plan *plan) {
       (plan->m ? f->masses * sizeof *plan->m : 0) + mesh->run_capacity * sizeof *mesh->run +
       mesh->n_added * (sizeof *mesh->k + sizeof *mesh->L) +
       mesh->anchor_capacity * sizeof *mesh->anchor + (plan->graph ? plan->graph->bytes : 0) +
-      (plan->contact.drift ? f->width * f->height / 8 : 0) +
-      (plan->discs ? msri_discs_bytes(plan->discs) : 0);
+      plan->contact.bytes + (plan->discs ? msri_discs_bytes(plan->discs) : 0);
   f->state_bytes = msri_state_bytes(plan);
 }
 

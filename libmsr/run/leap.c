@@ -49,6 +49,7 @@ static msr_status try(course *c, const msr_interval *interval, double reach, boo
   c->credit -= state->effort.spent;
   state->leap.spent += state->effort.spent;
   state->fresh = false;
+  msri_state_disarm(state);
   *made = status == MSR_OK;
   if (*made) return MSR_OK;
   msri_state_put_back(state, state->leap.before);
