@@ -93,6 +93,9 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags
 	@mkdir -p $(@D)
 	$(call show,CC)$(COMPILE) $(INTERNAL) $(OWN) -MMD -MP -c $< -o $@
 
+# gcc vectorises floor() and comparisons of numbers only if they can't trap.
+$(call object,libmsr/contacts/flock.c): ARITHMETIC += -fno-trapping-math
+
 $(BUILD)/libmsr.a: $(LIB_OBJ) $(BUILD)/sources
 	@rm -f $@
 	$(call show,AR)$(AR) rcs $@ $(LIB_OBJ)

@@ -370,8 +370,9 @@ typedef struct msr_integrator {
   bool reversible;       /* flipping v retraces the path, likewise, where no support is met */
   bool conservative;     /* keeps the energy for any h, likewise */
   bool splits;           /* advances what depends on v by damp(), not through a */
-  bool bounces;          /* sees to what is in the way itself: moves q by msr_system_drift alone, or
-                          * calls bounce(); else the library does after each step, and it does
+  bool bounces;          /* sees to what is in the way itself: moves q by msr_system_drift alone
+                          * (nor does it put it back: how far q went is remembered), or calls
+                          * bounce(); else the library does after each step, and it does
                           * where impacts are located and the method is adaptive */
   bool holds;            /* calls hold(), where the system has it, instead */
   bool implicit;         /* solves equations: evaluations are as many as that takes */

@@ -4,7 +4,7 @@
 #include "art.h"
 
 #include "base/pixel.h"
-#include "contacts/contact.h"
+#include "contacts/flock.h"
 #include "plan/state.h"
 
 #define PI 3.14159265358979323846
@@ -42,7 +42,8 @@ typedef struct mass {
 /* Moves one mass by h times its velocity; returns the number of collisions. */
 static uint64_t shoot(const msri_contact *contact, mass *m, double h) {
   const double u[2] = {m->v[0], m->v[1]};
-  return contact->drift(contact->self, 1, h, u, NULL, m->q, m->v, NULL);
+  const msri_flock one = msri_flock_of(1, u, NULL, m->q, m->v);
+  return contact->drift(contact->self, h, &one, NULL);
 }
 
 /* Along a path bent by a; or as a method does that reaches q, v + h a as if nothing was there; or
@@ -50,15 +51,16 @@ static uint64_t shoot(const msri_contact *contact, mass *m, double h) {
 static uint64_t shoot_bent(const msri_contact *contact, mass *m, double h, const double *a) {
   const double u[2] = {m->v[0], m->v[1]};
   const mass before = *m;
-  double owed[2];
-  if (draw(2)) return contact->drift(contact->self, 1, h, u, a, m->q, m->v, draw(2) ? owed : NULL);
+  msri_debt room;
+  msri_debts list = {&room, 0, 1, MSR_OK}, *debts = draw(2) ? &list : NULL;
+  const msri_flock one = msri_flock_of(1, u, a, m->q, m->v);
+  if (draw(2)) return contact->drift(contact->self, h, &one, debts);
   for (int d = 0; d < 2; d++) {
     m->q[d] += h * u[d] + h * h * a[d] / 2;
     m->v[d] += h * a[d];
   }
   if (contact->strike && draw(2)) return contact->strike(contact->self, 1, before.q, m->q, m->v);
-  return contact->bounce(contact->self, 1, h, before.q, before.v, m->q, m->v,
-                         draw(2) ? owed : NULL);
+  return contact->bounce(contact->self, 1, h, before.q, before.v, m->q, m->v, debts);
 }
 
 /* ---- Regions: cells that a path through air joins, in a picture with a ring around it */
@@ -390,7 +392,8 @@ static void only_what_approaches_is_reflected(void **unused) {
     const msri_contact contact = supports_of(wall, false, 1, 0, rules[rule]);
     const double u[2] = {200, 0}; // a mean velocity that isn't v
     double q[2] = {0.5, 0.5}, v[2] = {-3, 0};
-    assert_int_equal(contact.drift(contact.self, 1, 0.005, u, NULL, q, v, NULL), 1);
+    const msri_flock one = msri_flock_of(1, u, NULL, q, v);
+    assert_int_equal(contact.drift(contact.self, 0.005, &one, NULL), 1);
     assert_true(v[0] == -3 && (rules[rule] == MSR_IMPACTS_KEPT ? q[0] == 0.5 : q[0] < 1));
     contact.release(contact.self);
   }

@@ -200,7 +200,9 @@ static double bounce_error(const msri_contact *contact, bool settled, int wall, 
   const double t = times[1], h = t / (double)steps;
   double sum = 0;
   for (int n = 0; n < STARTS; n++) {
-    double z[4] = {-2 + 2 * fmod(0.6180339887 * n, 1), 1, 30, 7}, exact[4], z0[4], owed[2];
+    double z[4] = {-2 + 2 * fmod(0.6180339887 * n, 1), 1, 30, 7}, exact[4], z0[4];
+    msri_debt debt;
+    msri_debts debts = {&debt, 0, 1, MSR_OK};
     aim(wall, z);
     memcpy(exact, z, sizeof exact);
     swing_exactly(&s, t, exact);
@@ -208,9 +210,10 @@ static double bounce_error(const msri_contact *contact, bool settled, int wall, 
       memcpy(z0, z, sizeof z0);
       for (int d = 0; d < 2; d++) swing_freely(&s, h, &z[d], &z[2 + d]);
       for (int d = 0; d < 2; d++) z[d] += SIDE / 2, z0[d] += SIDE / 2;
-      contact->bounce(contact->self, 1, h, z0, z0 + 2, z, z + 2, settled ? owed : NULL);
+      contact->bounce(contact->self, 1, h, z0, z0 + 2, z, z + 2, settled ? &debts : NULL);
       for (int d = 0; d < 2; d++) z[d] -= SIDE / 2;
-      for (int d = 0; d < 2 && settled; d++) z[2 + d] -= owed[d] * s.omega * s.omega * z[d];
+      const double a[] = {-s.omega * s.omega * z[0], -s.omega * s.omega * z[1]};
+      must(msri_debts_pay(&debts, 0, a, a + 1, z + 2, z + 3));
     }
     sum += pow(z[0] - exact[0], 2) + pow(z[1] - exact[1], 2);
   }

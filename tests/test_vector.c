@@ -45,14 +45,18 @@ static void the_largest_is_found_wherever_it_is(void **state) {
   (void)state;
   uint64_t dice = 3;
   const double odd[] = {NO_NUMBER, INFINITE, -INFINITE};
-  double x[MOST] = {1};
+  double x[MOST] = {1}, y[MOST] = {0};
   assert_true(msri_largest(0, x) == 0);
   for (size_t i = 0; i < MOST; i++) {
     fill(x, &dice);
     x[i] = i % 2 ? 11 : -11;
     assert_true(msri_largest(MOST, x) == 11);
+    y[MOST - 1 - i] = i % 3 ? 9 : -12;
+    assert_true(msri_largest_of_two(MOST, x, y) == (i % 3 ? 11 : 12));
+    assert_true(msri_largest_of_two(MOST, y, x) == (i % 3 ? 11 : 12));
+    y[MOST - 1 - i] = 0;
     x[i] = odd[i % 3];
-    assert_true(!isfinite(msri_largest(MOST, x)));
+    assert_true(!isfinite(msri_largest(MOST, x)) && !isfinite(msri_largest_of_two(MOST, y, x)));
   }
 }
 

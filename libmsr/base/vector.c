@@ -4,7 +4,8 @@
 
 #include "base/machine.h"
 
-#include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 MSRI_INLINE void add_scaled(size_t n, double c, const double *restrict x, double *restrict y) {
   for (size_t i = 0; i < n; i++) y[i] += c * x[i];
@@ -25,29 +26,29 @@ MSRI_INLINE double sum_squares(size_t n, const double *w, const double *x) {
   return rest;
 }
 
-/* Eight side by side, too; 0 times what isn't finite is no number. */
-MSRI_INLINE double largest(size_t n, const double *x) {
-  double most[8] = {0}, sound[8] = {0};
-  for (size_t i = 0; i + 8 <= n; i += 8)
-    for (size_t k = 0; k < 8; k++) {
-      const double size = fabs(x[i + k]);
-      most[k] = size > most[k] ? size : most[k];
-      sound[k] += 0 * size;
-    }
-  for (size_t i = n - n % 8; i < n; i++) {
-    const double size = fabs(x[i]);
-    most[0] = size > most[0] ? size : most[0];
-    sound[0] += 0 * size;
+/* Numbers without sign are in the order of their bits, and what isn't finite comes last: unlike
+ * doubles, integers may be compared in any order. */
+MSRI_INLINE int64_t bits_of_size(double x) {
+  int64_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits & INT64_MAX;
+}
+
+MSRI_INLINE double largest(size_t n, const double *x, const double *y) {
+  int64_t most = 0;
+  for (size_t i = 0; i < n; i++) {
+    const int64_t a = bits_of_size(x[i]), b = bits_of_size(y[i]), size = a > b ? a : b;
+    most = size > most ? size : most;
   }
-  for (size_t k = 1; k < 8; k++) {
-    most[0] = most[k] > most[0] ? most[k] : most[0];
-    sound[0] += sound[k];
-  }
-  return most[0] + sound[0];
+  double found;
+  memcpy(&found, &most, sizeof found);
+  return found;
 }
 
 #if MSRI_WIDE
-MSRI_AVX2 static double largest_avx2(size_t n, const double *x) { return largest(n, x); }
+MSRI_AVX2 static double largest_avx2(size_t n, const double *x, const double *y) {
+  return largest(n, x, y);
+}
 
 MSRI_AVX2 static double sum_squares_avx2(size_t n, const double *w, const double *x) {
   return w ? sum_squares(n, w, x) : sum_squares(n, NULL, x);
@@ -81,12 +82,14 @@ void msri_scale(size_t n, double c, double *y) {
   scale(n, c, y);
 }
 
-double msri_largest(size_t n, const double *x) {
+double msri_largest_of_two(size_t n, const double *x, const double *y) {
 #if MSRI_WIDE
-  if (msri_has_avx2()) return largest_avx2(n, x);
+  if (msri_has_avx2()) return largest_avx2(n, x, y);
 #endif
-  return largest(n, x);
+  return largest(n, x, y);
 }
+
+double msri_largest(size_t n, const double *x) { return msri_largest_of_two(n, x, x); }
 
 double msri_dot(size_t n, const double *x, const double *y) {
   double sum = 0;

@@ -13,6 +13,9 @@ void msri_scale(size_t n, double c, double *y);
 /* The largest |x[i]|; no finite number if one isn't. */
 double msri_largest(size_t n, const double *x);
 
+/* The same of x[n] and y[n]. */
+double msri_largest_of_two(size_t n, const double *x, const double *y);
+
 /* Sum of x[i] y[i], in that order. */
 double msri_dot(size_t n, const double *x, const double *y);
 

@@ -2,7 +2,7 @@
 #ifndef MSRI_CONTACT_H
 #define MSRI_CONTACT_H
 
-#include "base/base.h"
+#include "contacts/debts.h"
 
 /* What a step from (q0, v0) to (q, v) would meet. */
 typedef struct msri_meeting {
@@ -15,20 +15,31 @@ typedef struct msri_meeting {
   double side;        /* inside being above it, 1, or below, -1 */
 } msri_meeting;
 
-/* q = x[n], y[n], likewise the others. */
+/* Some masses in a row, on their way; all arrays [n]. */
+typedef struct msri_flock {
+  size_t n, first; /* debts call its mass k: first + k */
+  double *x, *y, *vx, *vy;
+  const double *ux, *uy; /* what they drift by; may be vx, vy */
+  const double *ax, *ay; /* NULL: paths are straight */
+} msri_flock;
+
+/* Where nothing else is said, q = x[n], y[n], likewise the others. */
 typedef struct msri_contact {
   void *self;
-  /* q += h u for n masses along a path bent by a (may be NULL), stopped where something is in the
-   * way, which reflects v, the velocity in the middle of the drift. Returns the number of
-   * collisions. `owed` [2n] (NULL: not wanted) goes with a: v + owed * (a at the end), coordinate
-   * by coordinate, and then half a kick by a at the end, is more accurate; owed is 0 where nothing
-   * was met. */
-  uint64_t (*drift)(const void *self, size_t n, double h, const double *u, const double *a,
-                    double *q, double *v, double *owed);
-  /* The same for a step that went from (q0, v0) to (q, v) as if nothing were in the way; v is the
-   * velocity at the end, and has no half kick to come. */
+  size_t bytes; /* that self takes */
+  /* x += h u along a path bent by a, stopped where something is in the way, which reflects v, the
+   * velocity in the middle of the drift. Returns the number of collisions. What masses are owed
+   * (NULL: not wanted) goes with a: once that is paid, half a kick by the acceleration at the end
+   * is more accurate. By ascending masses; calls for ranges that don't overlap may be made at once.
+   */
+  uint64_t (*drift)(const void *self, double h, const msri_flock *flock, msri_debts *debts);
+  /* How far each of n masses can go, along either axis, and meet nothing, at least [px]; 0 as soon
+   * as that is nothing for one of them. NULL: unknown. */
+  double (*clearance)(const void *self, size_t n, const double *x, const double *y);
+  /* As drift for n masses and a step that went from (q0, v0) to (q, v) as if nothing were in the
+   * way; v is the velocity at the end, and has no half kick to come. */
   uint64_t (*bounce)(const void *self, size_t n, double h, const double *q0, const double *v0,
-                     double *q, double *v, double *owed);
+                     double *q, double *v, msri_debts *debts);
   /* As hold of msr_system: marks what would be stopped between q0 and q; tells whether it did.
    * NULL: that isn't how this contact works. */
   bool (*hold)(const void *self, size_t n, const double *q0, const double *q, bool *held);

@@ -5,6 +5,7 @@
 
 #include "base/vector.h"
 #include "contacts/collide.h"
+#include "contacts/flock.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -76,37 +77,38 @@ static bool drifts_alone(work *c, double h, const double *u, double *q) {
 }
 
 uint64_t msri_discs_drift(const msri_obstacles *all, double h, const double *u, const double *a,
-                          double *q, double *v, double *owed) {
+                          double *q, double *v, msri_debts *debts) {
   uint64_t met = 0;
   const msri_contact *supports = all->supports;
   work c = begin(all, h);
   msri_drift *const d = &c.d;
   if (!supports->drift && drifts_alone(&c, h, u, q)) return 0;
   memcpy(c.vector, q, 2 * d->n * sizeof *q);
+  const msri_flock flock = msri_flock_of(d->n, u, a, q, v);
   if (supports->drift)
-    met = supports->drift(supports->self, d->n, h, u, a, q, v, owed);
+    met = supports->drift(supports->self, h, &flock, debts);
   else
     msri_add_scaled(2 * d->n, h, u, q);
   msri_motion_measure(c.lists.bodies, c.vector, q, c.lists.box);
-  d->owed = supports->drift ? owed : NULL;
+  d->debts = supports->drift ? debts : NULL;
   d->q0 = c.vector, d->q = q, d->v = v;
   d->kick = a, d->unit = h;
   return met + msri_collide(d, &c.lists, q);
 }
 
 uint64_t msri_discs_bounce(const msri_obstacles *all, double h, const double *q0, const double *v0,
-                           double *q, double *v, double *owed) {
+                           double *q, double *v, msri_debts *debts) {
   uint64_t met = 0;
   const msri_contact *supports = all->supports;
   work c = begin(all, h);
   msri_drift *const d = &c.d;
   double *const kick = c.vector;
   for (size_t i = 0; i < 2 * d->n; i++) kick[i] = v[i] - v0[i];
-  if (supports->bounce) met = supports->bounce(supports->self, d->n, h, q0, v0, q, v, owed);
+  if (supports->bounce) met = supports->bounce(supports->self, d->n, h, q0, v0, q, v, debts);
   msri_motion_measure(c.lists.bodies, q0, q, c.lists.box);
   d->q0 = q0, d->q = q, d->v = v;
   d->kick = kick, d->unit = 1, d->behind = 0.5;
-  d->owed = supports->bounce ? owed : NULL;
+  d->debts = supports->bounce ? debts : NULL;
   return met + msri_collide(d, &c.lists, NULL);
 }
 

@@ -31,8 +31,8 @@ typedef struct msri_obstacles {
 
 /* As msri_contact's drift and bounce. */
 uint64_t msri_discs_drift(const msri_obstacles *all, double h, const double *u, const double *a,
-                          double *q, double *v, double *owed);
+                          double *q, double *v, msri_debts *debts);
 uint64_t msri_discs_bounce(const msri_obstacles *all, double h, const double *q0, const double *v0,
-                           double *q, double *v, double *owed);
+                           double *q, double *v, msri_debts *debts);
 
 #endif

@@ -21,7 +21,7 @@ typedef struct msri_drift {
   double unit, behind; /* v is ahead of the velocity in the middle by that share of it */
   bool rests;          /* slow contacts end without a relative velocity, see drift.c */
   signed char *held;   /* [2n]: a support stopped it on its way up, 1, or down, -1 */
-  double *owed;        /* [2n] as in contact.h; may be NULL */
+  msri_debts *debts;   /* of the supports; may be NULL */
   double apart;        /* by which discs that overlap may part [px] */
   double most;         /* how far one may be pushed [px] */
   uint32_t *zone, *next; /* [n]: the zone that a mass is of, and the next mass of it */
@@ -86,7 +86,7 @@ static inline void msri_drift_redirect(const msri_drift *d, size_t i, msri_vec w
 
 static inline void msri_drift_speed_up(const msri_drift *d, size_t i, double x, double y) {
   d->v[i] += x, d->v[d->n + i] += y;
-  if (d->owed) d->owed[i] = d->owed[d->n + i] = 0;
+  if (d->debts) msri_debts_cancel(d->debts, i);
 }
 
 /* Neither has been pushed since the pair was looked at in the last pass. */

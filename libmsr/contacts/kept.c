@@ -110,35 +110,38 @@ unsigned msri_supports_keep(const msri_supports *s, const double *to, msri_leg *
   return collisions;
 }
 
-static uint64_t drift(const void *self, size_t n, double h, const double *u, const double *a,
-                      double *q, double *v, double *owed) {
-  uint64_t collisions = 0;
-  for (size_t i = 0, j = n; i < n; i++, j++) {
-    const double to[] = {q[i] + h * u[i], q[j] + h * u[j]};
-    if (owed) owed[i] = owed[j] = 0;
-    if (floor(to[0]) == floor(q[i]) && floor(to[1]) == floor(q[j])) {
-      q[i] = to[0], q[j] = to[1];
-      continue;
-    }
-    msri_leg leg = {.h = h,
-                    .a = {a ? a[i] : 0, a ? a[j] : 0},
-                    .x = {q[i], q[j]},
-                    .v = {v[i], v[j]},
-                    .follows = owed != NULL};
-    collisions += msri_supports_keep(self, to, &leg);
-    q[i] = leg.x[0], q[j] = leg.x[1];
-    v[i] = leg.v[0], v[j] = leg.v[1];
-    if (owed) owed[i] = leg.owed[0], owed[j] = leg.owed[1];
-  }
+/* ---- All masses, or some */
+
+static void owe(msri_debts *debts, size_t mass, const msri_leg *leg) {
+  if (leg->owed[0] != 0 || leg->owed[1] != 0)
+    msri_debts_add(debts, mass, leg->owed[0], leg->owed[1]);
+}
+
+/* msri_walk. */
+static unsigned walk(const msri_supports *s, double h, const msri_flock *f, size_t k,
+                     const double *to, msri_debts *debts) {
+  msri_leg leg = {.h = h,
+                  .a = {f->ax ? f->ax[k] : 0, f->ax ? f->ay[k] : 0},
+                  .x = {f->x[k], f->y[k]},
+                  .v = {f->vx[k], f->vy[k]},
+                  .follows = debts != NULL};
+  const unsigned collisions = msri_supports_keep(s, to, &leg);
+  f->x[k] = leg.x[0], f->y[k] = leg.x[1];
+  f->vx[k] = leg.v[0], f->vy[k] = leg.v[1];
+  if (collisions > 0 && debts) owe(debts, f->first + k, &leg);
   return collisions;
+}
+
+static uint64_t drift(const void *self, double h, const msri_flock *flock, msri_debts *debts) {
+  return msri_supports_drift(self, h, flock, debts, walk);
 }
 
 /* Half of the velocity's change comes before the way, half after it, so that a bounce costs no
  * energy. */
 static uint64_t bounce(const void *self, size_t n, double h, const double *q0, const double *v0,
-                       double *q, double *v, double *owed) {
+                       double *q, double *v, msri_debts *debts) {
   uint64_t collisions = 0;
-  (void)owed;
+  (void)debts;
   for (size_t i = 0, j = n; i < n; i++, j++) {
     const double to[] = {q[i], q[j]}, half[] = {(v[i] - v0[i]) / 2, (v[j] - v0[j]) / 2};
     msri_leg leg = {.h = h,

@@ -108,28 +108,29 @@ static bool is_free(const msri_supports *s, const double *from, const double *to
   return same_pixel(from, to) || !msri_supports_face(s, from, to, &met);
 }
 
-static uint64_t drift(const void *self, size_t n, double h, const double *u, const double *a,
-                      double *q, double *v, double *owed) {
-  uint64_t collisions = 0;
-  for (size_t i = 0, j = n; i < n; i++, j++) {
-    const double from[] = {q[i], q[j]}, to[] = {q[i] + h * u[i], q[j] + h * u[j]};
-    if (owed) owed[i] = owed[j] = 0;
-    q[i] = to[X], q[j] = to[Y];
-    if (is_free(self, from, to)) continue;
-    const double ai = a ? a[i] : 0, aj = a ? a[j] : 0;
-    flight f = {.x = {from[X], from[Y]},
-                .rate = {u[i] - ai * h / 2, u[j] - aj * h / 2},
-                .w = {v[i] - ai * h / 2, v[j] - aj * h / 2},
-                .a = {ai, aj},
-                .left = h,
-                .follows = owed != NULL};
-    collisions += fly(self, to, &f);
-    q[i] = f.x[X], q[j] = f.x[Y];
-    v[i] = f.w[X] - (owed ? f.owed[X] : h / 2) * ai;
-    v[j] = f.w[Y] - (owed ? f.owed[Y] : h / 2) * aj;
-    if (owed) owed[i] = f.owed[X] - h / 2, owed[j] = f.owed[Y] - h / 2;
-  }
+/* msri_walk. */
+static unsigned walk(const msri_supports *s, double h, const msri_flock *fl, size_t k,
+                     const double *to, msri_debts *debts) {
+  const double from[] = {fl->x[k], fl->y[k]};
+  const double a[] = {fl->ax ? fl->ax[k] : 0, fl->ax ? fl->ay[k] : 0};
+  fl->x[k] = to[X], fl->y[k] = to[Y];
+  if (is_free(s, from, to)) return 0;
+  flight f = {.x = {from[X], from[Y]},
+              .rate = {fl->ux[k] - a[X] * h / 2, fl->uy[k] - a[Y] * h / 2},
+              .w = {fl->vx[k] - a[X] * h / 2, fl->vy[k] - a[Y] * h / 2},
+              .a = {a[X], a[Y]},
+              .left = h,
+              .follows = debts != NULL};
+  const unsigned collisions = fly(s, to, &f);
+  fl->x[k] = f.x[X], fl->y[k] = f.x[Y];
+  fl->vx[k] = f.w[X] - (debts ? f.owed[X] : h / 2) * a[X];
+  fl->vy[k] = f.w[Y] - (debts ? f.owed[Y] : h / 2) * a[Y];
+  if (debts) msri_debts_add(debts, fl->first + k, f.owed[X] - h / 2, f.owed[Y] - h / 2);
   return collisions;
+}
+
+static uint64_t drift(const void *self, double h, const msri_flock *flock, msri_debts *debts) {
+  return msri_supports_drift(self, h, flock, debts, walk);
 }
 
 /* The flight that mass i, of coordinates i and j, made in a step. Its acceleration is that which
@@ -149,18 +150,17 @@ static flight flight_of(double h, const double *q0, const double *v0, const doub
 }
 
 static uint64_t bounce(const void *self, size_t n, double h, const double *q0, const double *v0,
-                       double *q, double *v, double *owed) {
+                       double *q, double *v, msri_debts *debts) {
   uint64_t collisions = 0;
   for (size_t i = 0, j = n; i < n; i++, j++) {
     const double from[] = {q0[i], q0[j]}, to[] = {q[i], q[j]};
-    if (owed) owed[i] = owed[j] = 0;
     if (is_free(self, from, to)) continue;
-    flight f = flight_of(h, q0, v0, q, v, i, j, owed != NULL);
+    flight f = flight_of(h, q0, v0, q, v, i, j, debts != NULL);
     collisions += fly(self, to, &f);
     q[i] = f.x[X], q[j] = f.x[Y];
-    v[i] = f.w[X] - (owed ? f.owed[X] * f.a[X] : 0);
-    v[j] = f.w[Y] - (owed ? f.owed[Y] * f.a[Y] : 0);
-    if (owed) owed[i] = f.owed[X], owed[j] = f.owed[Y];
+    v[i] = f.w[X] - (debts ? f.owed[X] * f.a[X] : 0);
+    v[j] = f.w[Y] - (debts ? f.owed[Y] * f.a[Y] : 0);
+    if (debts) msri_debts_add(debts, i, f.owed[X], f.owed[Y]);
   }
   return collisions;
 }

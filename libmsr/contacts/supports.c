@@ -65,14 +65,20 @@ static bool stop(const void *self, const double *from, double *to) {
 msr_status msri_supports_create(const msr_picture *picture, const msri_supports_options *options,
                                 msri_contact *contact, msr_error *err) {
   const size_t words = picture->width * picture->height / MSRI_WORD + 1;
-  msri_supports *s = msri_alloc(1, sizeof *s + words * sizeof *s->solid, "the supports", err);
+  const size_t distances = (picture->width + 2) * (picture->height + 2);
+  const size_t bytes = sizeof(msri_supports) + words * sizeof(uint64_t) + distances;
+  msri_supports *s = msri_alloc(1, bytes, "the supports", err);
   if (!s) return MSR_ENOMEM;
   s->width = picture->width;
   s->height = picture->height;
   s->options = *options;
+  s->distance = (unsigned char *)(s->solid + words);
   mark(s, picture);
+  msri_supports_measure(s);
   *contact = options->impacts == MSR_IMPACTS_LOCATED ? msri_impacts_located : msri_impacts_kept;
   contact->self = s;
+  contact->bytes = bytes;
+  contact->clearance = msri_supports_clearance;
   contact->stop = stop;
   contact->release = free;
   return MSR_OK;

@@ -2,7 +2,7 @@
 #ifndef MSRI_SUPPORTS_H
 #define MSRI_SUPPORTS_H
 
-#include "contacts/contact.h"
+#include "contacts/flock.h"
 
 #include <math.h>
 
@@ -12,7 +12,8 @@ enum { MSRI_WORD = 64, MSRI_AXES = 2 };
 typedef struct msri_supports {
   size_t width, height;
   msri_supports_options options;
-  uint64_t solid[]; /* [width * height / 64, rounded up]; rows from the bottom: y is up */
+  unsigned char *distance; /* [height + 2][width + 2], see clearance.c */
+  uint64_t solid[];        /* [width * height / 64, rounded up]; rows from the bottom: y is up */
 } msri_supports;
 
 /* The edge through which a way enters a support: the last coordinate outside. */
@@ -58,6 +59,50 @@ static inline bool msri_supports_rests(const msri_supports *s, double way, doubl
 /* The mass of a leg goes to `to` [2] by the rule MSR_IMPACTS_KEPT. Returns the number of
  * collisions. */
 unsigned msri_supports_keep(const msri_supports *s, const double *to, msri_leg *leg);
+
+/* Fills the distances. */
+void msri_supports_measure(msri_supports *s);
+
+/* msri_contact's clearance. */
+double msri_supports_clearance(const void *self, size_t n, const double *x, const double *y);
+
+/* Where `at` lies, in rows or columns of the distances. */
+static inline size_t msri_supports_cell(double at, size_t size) {
+  return at < 0 ? 0 : at < (double)size ? (size_t)(int64_t)at + 1 : size + 1;
+}
+
+/* How far it is from (x, y) to the nearest support, along one axis or the other, at least. */
+static inline double msri_supports_gap(const msri_supports *s, double x, double y) {
+  const size_t row = msri_supports_cell(y, s->height), column = msri_supports_cell(x, s->width);
+  return (double)s->distance[row * (s->width + 2) + column] - 1;
+}
+
+/* What mass k does that wants to leave its pixel for `to` [2]. Returns the number of collisions. */
+typedef unsigned msri_walk(const msri_supports *s, double h, const msri_flock *flock, size_t k,
+                           const double *to, msri_debts *debts);
+
+/* msri_contact's drift: those walk that leave their pixel and may come to a support. Inline, so
+ * that nothing is called through a pointer. */
+static inline uint64_t msri_supports_drift(const msri_supports *s, double h,
+                                           const msri_flock *flock, msri_debts *debts,
+                                           msri_walk *walk) {
+  int64_t leaves[MSRI_FLOCK_BLOCK];
+  uint64_t collisions = 0;
+  for (size_t from = 0; from < flock->n; from += MSRI_FLOCK_BLOCK) {
+    const msri_flock f = msri_flock_part(flock, from);
+    msri_flock_move(&f, h, leaves);
+    for (size_t k = 0; k < f.n; k++) {
+      if (!leaves[k]) continue;
+      const double to[] = {f.x[k] + h * f.ux[k], f.y[k] + h * f.uy[k]};
+      const double gap = msri_supports_gap(s, f.x[k], f.y[k]);
+      if (fabs(to[0] - f.x[k]) < gap && fabs(to[1] - f.y[k]) < gap)
+        f.x[k] = to[0], f.y[k] = to[1];
+      else
+        collisions += walk(s, h, &f, k, to, debts);
+    }
+  }
+  return collisions;
+}
 
 /* The callbacks of a rule; the rest of the contact isn't set. */
 extern const msri_contact msri_impacts_kept, msri_impacts_located;

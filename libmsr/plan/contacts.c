@@ -23,11 +23,12 @@ static void leave(msr_state *state, size_t was) { msri_meter_turn(&state->meter,
 
 /* Pays what masses are owed after collisions. */
 static msr_status settle(msr_state *state, const double *q, double *v) {
-  const size_t n = 2 * state->plan->figures.masses;
-  const double t = state->end;
+  const size_t n = state->plan->figures.masses;
+  const double t = state->end, *a = state->ahead;
+  if (state->debts.n == 0 && state->debts.status == MSR_OK) return MSR_OK;
   const msr_status status = msri_state_accelerate(state, t, q, NULL, state->ahead);
-  if (status != MSR_OK) return status;
-  for (size_t i = 0; i < n; i++) v[i] += state->owed[i] * state->ahead[i];
+  const msr_status paid = msri_debts_pay(&state->debts, 0, a, a + n, v, v + n);
+  if (status != MSR_OK || paid != MSR_OK) return status != MSR_OK ? status : paid;
   state->known = (msri_known){q, t};
   return MSR_OK;
 }
@@ -38,20 +39,33 @@ bool msri_state_knows(msr_state *state, double t, const double *q) {
   return knows;
 }
 
+/* Supports alone. */
+static uint64_t drift(msr_state *state, double h, const msri_flock *all, msri_debts *debts) {
+  const msri_contact *contact = &state->plan->contact;
+  uint64_t collisions = 0;
+  if (all->x != state->q) msri_state_disarm(state);
+  if (all->x != state->q || !msri_plan_arms(state->plan))
+    return contact->drift(contact->self, h, all, debts);
+  for (size_t from = 0, block = 0; from < all->n; from += MSRI_FLOCK_BLOCK, block++) {
+    const msri_flock f = msri_flock_part(all, from);
+    collisions += msri_armed_drift(&state->armed[block], contact, h, &f, debts);
+  }
+  return collisions;
+}
+
 msr_status msri_state_drift(void *self, double h, const double *u, const double *a, double *q,
                             double *v) {
   msr_state *state = self;
   const msri_contact *contact = &state->plan->contact;
-  const size_t n = state->plan->figures.masses;
+  const msri_flock flock = msri_flock_of(state->plan->figures.masses, u, a, q, v);
   const msri_obstacles all = {state->plan->discs, contact, state->discs};
-  double *owed = a ? state->owed : NULL;
+  msri_debts *debts = a && msri_plan_settles(state->plan) ? &state->debts : NULL;
   const size_t was = enter(state);
-  const uint64_t collisions = state->plan->discs
-                                  ? msri_discs_drift(&all, h, u, a, q, v, owed)
-                                  : contact->drift(contact->self, n, h, u, a, q, v, owed);
+  const uint64_t collisions = state->plan->discs ? msri_discs_drift(&all, h, u, a, q, v, debts)
+                                                 : drift(state, h, &flock, debts);
   state->known.q = NULL;
   count(state, collisions);
-  const msr_status status = owed && collisions > 0 ? settle(state, q, v) : MSR_OK;
+  const msr_status status = settle(state, q, v);
   leave(state, was);
   return status;
 }
@@ -63,15 +77,16 @@ msr_status msri_state_bounce(void *self, double h, const double *q0, const doubl
   const size_t n = state->plan->figures.masses;
   const msri_obstacles all = {state->plan->discs, contact, state->discs};
   // in the last moment of a step what is owed is nothing, and the rounding of (q - q0) / h is much
-  double *owed = contact->meet && h > 1e-3 * state->plan->figures.h ? state->owed : NULL;
+  const bool settles = contact->meet && h > 1e-3 * state->plan->figures.h;
+  msri_debts *debts = settles && msri_plan_settles(state->plan) ? &state->debts : NULL;
   const size_t was = enter(state);
   const uint64_t collisions = state->plan->discs
-                                  ? msri_discs_bounce(&all, h, q0, v0, q, v, owed)
-                                  : contact->bounce(contact->self, n, h, q0, v0, q, v, owed);
+                                  ? msri_discs_bounce(&all, h, q0, v0, q, v, debts)
+                                  : contact->bounce(contact->self, n, h, q0, v0, q, v, debts);
   *met = collisions > 0;
   state->known.q = NULL;
   count(state, collisions);
-  const msr_status status = owed && *met ? settle(state, q, v) : MSR_OK;
+  const msr_status status = settle(state, q, v);
   leave(state, was);
   return status;
 }

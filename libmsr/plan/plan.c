@@ -50,8 +50,7 @@ static void count_memory(msr_plan *plan) {
                   added * ((plan->added_move ? 4 : 2) * sizeof *plan->added + 3) +
                   plan->n_effects * (2 * sizeof *plan->effect + sizeof *plan->reason) +
                   (plan->m ? f->masses * sizeof *plan->m : 0) + msri_mesh_bytes(mesh) +
-                  (plan->graph ? plan->graph->bytes : 0) +
-                  (plan->contact.drift ? f->width * f->height / 8 : 0) +
+                  (plan->graph ? plan->graph->bytes : 0) + plan->contact.bytes +
                   (plan->discs ? msri_discs_bytes(plan->discs) : 0) +
                   msri_objects_bytes(&plan->objects);
   f->state_bytes = msri_state_bytes(plan);

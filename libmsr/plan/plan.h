@@ -121,6 +121,11 @@ static inline bool msri_plan_bounces(const msr_plan *plan) {
   return !integrator->bounces || (integrator->adaptive && msri_plan_ends_at_impacts(plan));
 }
 
+/* Are masses that can't reach a support left untested? */
+static inline bool msri_plan_arms(const msr_plan *plan) {
+  return plan->contact.clearance && !plan->discs && !msri_plan_bounces(plan);
+}
+
 /* Does what met something need the acceleration at the end of the step? Implicit methods, whose
  * steps may be too long for what that would say, do without; so do methods that leave contacts to
  * the library, where places are kept, masses that others may push away, and steps so long that what

@@ -20,7 +20,7 @@ typedef struct room {
 /* Where each array lies after the block's first aligned byte; `end` is after the last. */
 typedef struct layout {
   room room;
-  size_t q, v, work, before, owed, ahead, middle, drive, discs, scratch, calls, seconds, kept, end;
+  size_t q, v, work, before, ahead, armed, middle, drive, discs, scratch, calls, seconds, kept, end;
 } layout;
 
 static size_t reserve(size_t *end, size_t bytes) {
@@ -49,6 +49,10 @@ static void place_room(msr_state *state, const room *r, const msri_graph *graph,
   if (graph) state->stiffness = msri_stiffness_place(graph, &now, arrays + r->solver);
 }
 
+static size_t armed_bytes(const msr_plan *plan) {
+  return msri_flock_blocks(plan->figures.masses) * sizeof(msri_armed);
+}
+
 static layout lay_out(const msr_plan *plan) {
   const size_t vector = 2 * plan->figures.masses * sizeof(double);
   const bool sweeps = msri_plan_sweeps(plan);
@@ -61,8 +65,8 @@ static layout lay_out(const msr_plan *plan) {
   l.v = reserve(&end, vector);
   l.work = reserve(&end, (vectors > 0 || sweeps ? vectors : 1) * vector);
   l.before = reserve(&end, msri_plan_bounces(plan) ? 2 * vector : 0);
-  l.owed = reserve(&end, msri_plan_settles(plan) ? vector : 0);
   l.ahead = reserve(&end, msri_plan_settles(plan) ? vector : 0);
+  l.armed = reserve(&end, msri_plan_arms(plan) ? armed_bytes(plan) : 0);
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
   l.drive = reserve(&end, plan->followed ? vector : 0);
   l.discs = reserve(&end, plan->discs ? msri_discs_room(plan->discs) : 0);
@@ -104,8 +108,8 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .v = (void *)(arrays + l.v),
       .work = {.vector = (void *)(arrays + l.work)},
       .before = (void *)(arrays + l.before),
-      .owed = msri_plan_settles(plan) ? (void *)(arrays + l.owed) : NULL,
       .ahead = (void *)(arrays + l.ahead),
+      .armed = (void *)(arrays + l.armed),
       .care = {.kept = (void *)(arrays + l.kept)},
       .middle = (void *)(arrays + l.middle),
       .drive = (void *)(arrays + l.drive),
@@ -151,6 +155,7 @@ void msr_state_free(msr_state *state) {
   const msr_integrator *integrator = state->plan->figures.integrator;
   if (integrator->close) integrator->close(state->work.object);
   msri_sweep_free(state->sweep);
+  msri_debts_clear(&state->debts);
   free(state->care.memory);
   free(state->care.graph);
   free(state);
@@ -197,11 +202,17 @@ void msri_state_put_back(msr_state *state, const double *kept) {
   memcpy(state->q, kept, n * sizeof *kept);
   memcpy(state->v, kept + n, n * sizeof *kept);
   moved(state);
+  msri_state_disarm(state);
+}
+
+void msri_state_disarm(msr_state *state) {
+  if (msri_plan_arms(state->plan)) memset(state->armed, 0, armed_bytes(state->plan));
 }
 
 void msri_state_touched(msr_state *state) {
   moved(state);
   state->guard.begun = state->care.begun = state->care.on = false;
+  msri_state_disarm(state);
 }
 
 /* ---- Reading */

@@ -2,6 +2,7 @@
 #ifndef MSRI_STATE_H
 #define MSRI_STATE_H
 
+#include "contacts/armed.h"
 #include "plan/meter.h"
 #include "plan/plan.h"
 #include "solvers/stiffness.h"
@@ -67,8 +68,9 @@ struct msr_state {
   msr_workspace work; /* vector [integrator->vectors, 1 at least][2n] */
   double *q, *v;      /* x[n], y[n]; vx[n], vy[n] */
   double *before;     /* [4n] if the library bounces: q, v before the step */
-  double *owed;       /* [2n] if the plan settles: see contacts.c; else NULL */
-  double *ahead;      /* [2n] likewise: the acceleration at the end of a step */
+  double *ahead;      /* [2n] if the plan settles, see contacts.c: a at the end of a step */
+  msri_debts debts;   /* in contacts.c; else empty */
+  msri_armed *armed;  /* [masses / MSRI_FLOCK_BLOCK, rounded up] if the plan arms */
   msri_known known;
   double end; /* of the step under way [s] */
   msri_effort effort;
@@ -148,6 +150,9 @@ msr_status msri_state_make_room(msr_state *state, msr_error *err);
 /* Copies q and v to kept [4n], and back. */
 void msri_state_keep(const msr_state *state, double *kept);
 void msri_state_put_back(msr_state *state, const double *kept);
+
+/* Tells that q was changed otherwise than by a drift: all masses are tested against supports. */
+void msri_state_disarm(msr_state *state);
 
 /* Tells that q or v were changed from outside. */
 void msri_state_touched(msr_state *state);

@@ -51,6 +51,7 @@ static msr_status try(course *c, const msr_interval *interval, double reach, boo
   c->credit -= state->effort.spent;
   state->leap.spent += state->effort.spent;
   state->fresh = false;
+  msri_state_disarm(state);
   *made = status == MSR_OK;
   if (!*made) msri_state_put_back(state, state->leap.before);
   msri_meter_turn(&state->meter, was);
