@@ -7,7 +7,7 @@ typedef struct msri_task {
   int ways; /* of springs, from MSRI_RIGHT on */
   int besides;
   bool only_below;
-  double *ax, *ay; /* [n]; NULL: cells move */
+  double *ax, *ay; /* [n]: accelerations go here, and cells do not drift; NULL: they do */
 } msri_task;
 
 /* Where a row is to be gone on with, and the force of the spring that ends there from the left. */
@@ -73,19 +73,22 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
     width(s, motion, &(msri_task){.ways = number, .besides = with}, &place);                       \
     return place.fastest;                                                                          \
   }
-#define ACCELERATE(target, width, number, with)                                                    \
-  target static void accelerate_##width##_##number##_##with(                                       \
+#define KICK(target, width, number, with)                                                          \
+  target static double kick_##width##_##number##_##with(                                           \
       const msri_cells *s, const msri_motion *motion, double *ax, double *ay) {                    \
-    width(s, motion, &(msri_task){.ways = number, .besides = with, .ax = ax, .ay = ay},            \
-          &(msri_place){0});                                                                       \
+    msri_place place = {0};                                                                        \
+    width(s, motion, &(msri_task){.ways = number, .besides = with, .ax = ax, .ay = ay}, &place);   \
+    return place.fastest;                                                                          \
   }
 #define KERNELS(target, width, number)                                                             \
   ADVANCE(target, width, number, 0)                                                                \
   ADVANCE(target, width, number, 1)                                                                \
   ADVANCE(target, width, number, 2)                                                                \
   ADVANCE(target, width, number, 3)                                                                \
-  ACCELERATE(target, width, number, 0)                                                             \
-  ACCELERATE(target, width, number, 1)                                                             \
+  KICK(target, width, number, 0)                                                                   \
+  KICK(target, width, number, 1)                                                                   \
+  KICK(target, width, number, 2)                                                                   \
+  KICK(target, width, number, 3)                                                                   \
   target static void pull_##width##_##number(const msri_cells *s, const msri_motion *motion) {     \
     width(s, motion, &(msri_task){.ways = number, .only_below = true}, &(msri_place){0});          \
   }
@@ -93,7 +96,8 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
   {                                                                                                \
     {advance_##width##_##number##_0, advance_##width##_##number##_1,                               \
      advance_##width##_##number##_2, advance_##width##_##number##_3},                              \
-        {accelerate_##width##_##number##_0, accelerate_##width##_##number##_1},                    \
+        {kick_##width##_##number##_0, kick_##width##_##number##_1, kick_##width##_##number##_2,    \
+         kick_##width##_##number##_3},                                                             \
         pull_##width##_##number,                                                                   \
   }
 

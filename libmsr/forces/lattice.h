@@ -49,9 +49,9 @@ typedef struct msri_lattice_kernel {
     /* Forces, then kick, kick, drift; by what acts beside the springs. Returns the largest
      * velocity along an axis, as far as it is a number. */
     double (*advance[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
-    /* Accelerations ax, ay [n], air left out. */
-    void (*accelerate[MSRI_WITH_AIR])(const msri_cells *cells, const msri_motion *motion,
-                                      double *ax, double *ay);
+    /* The same without the drift; accelerations go to ax, ay [n]. */
+    double (*kick[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion, double *ax,
+                                 double *ay);
     /* Only the forces of the springs to the cells below. */
     void (*pull)(const msri_cells *cells, const msri_motion *motion);
   } of[2]; /* 4 neighbours, 8 neighbours */

@@ -50,7 +50,9 @@ static void place_room(msr_state *state, const room *r, const msri_graph *graph,
 }
 
 static size_t armed_bytes(const msr_plan *plan) {
-  return msri_flock_blocks(plan->figures.masses) * sizeof(msri_armed);
+  const size_t n = plan->figures.masses;
+  const size_t ranges = msri_plan_sweeps(plan) ? plan->objects.n_rows : msri_flock_blocks(n);
+  return ranges * sizeof(msri_armed);
 }
 
 static layout lay_out(const msr_plan *plan) {
@@ -65,7 +67,7 @@ static layout lay_out(const msr_plan *plan) {
   l.v = reserve(&end, vector);
   l.work = reserve(&end, (vectors > 0 || sweeps ? vectors : 1) * vector);
   l.before = reserve(&end, msri_plan_bounces(plan) ? 2 * vector : 0);
-  l.ahead = reserve(&end, msri_plan_settles(plan) ? vector : 0);
+  l.ahead = reserve(&end, msri_plan_settles(plan) && !sweeps ? vector : 0);
   l.armed = reserve(&end, msri_plan_arms(plan) ? armed_bytes(plan) : 0);
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
   l.drive = reserve(&end, plan->followed ? vector : 0);

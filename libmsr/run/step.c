@@ -144,8 +144,8 @@ static msr_status follow(msr_state *state, uint64_t steps) {
 static msr_status sweep(msr_state *state, uint64_t end, const msri_poll *poll, bool *fast) {
   const size_t n = state->plan->figures.masses;
   const double most = sqrt(2 * state->guard.most / state->plan->uniform_mass);
-  const msri_swept swept = {state->q,     state->q + n,   state->v,
-                            state->v + n, state->scratch, state->meter.calls};
+  const msri_swept swept = {state->q,       state->q + n,       state->v,    state->v + n,
+                            state->scratch, state->meter.calls, state->armed};
   const msri_course way = {state->plan, state->iteration, state->substep, steps_to(state, end)};
   msr_status status = poll->call ? poll->call(poll->data, state) : MSR_OK;
   if (status != MSR_OK) return status;
@@ -153,6 +153,7 @@ static msr_status sweep(msr_state *state, uint64_t end, const msri_poll *poll, b
   state->work.steps += progress.steps;
   state->meter.calls[state->plan->row.integrator] += progress.steps;
   state->evaluations += progress.evaluations;
+  state->contacts += progress.met;
   *fast = progress.fast;
   return follow(state, progress.steps);
 }

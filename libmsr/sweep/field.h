@@ -14,6 +14,7 @@ typedef struct msri_pass {
   int stages;
   int ways;    /* of springs: to 4 or to 8 neighbours */
   int besides; /* what acts beside them */
+  bool meets;  /* something may be in the way */
 } msri_pass;
 
 /* Dense arrays, each as long as `stride`; what is around the cells of use is there to be read. */

@@ -1,6 +1,8 @@
 /* patch.c - see patch.h. */
 #include "sweep/patch.h"
 
+#include "sweep/meet.h"
+
 #include <string.h>
 
 /* Cells of a row and the one after it: no vector holds two neighbours in a column. */
@@ -18,10 +20,16 @@ static size_t marks_size(const msri_object *object) {
   return 2 * (length(object) + 2 * MSRI_MARGIN);
 }
 
-size_t msri_patch_size(int ways, const msri_object *object) {
+/* Accelerations, what is owed, and the velocities before that. */
+static size_t meet_size(const msri_object *object) {
+  return 2 * msri_patch_cells(object) + MSRI_MEET_DEBT * object->masses;
+}
+
+size_t msri_patch_size(int ways, bool meets, const msri_object *object) {
   const size_t pulls = 2 * (size_t)(ways - MSRI_BELOW);
   const size_t all = stride(msri_patch_cells(object), length(object));
-  return msri_field_size(ways, all) + pulls * all + marks_size(object);
+  return msri_field_size(ways, all) + pulls * all + marks_size(object) +
+         (meets ? meet_size(object) : 0);
 }
 
 /* Marks of a row and of the one below it take turns. */
@@ -74,18 +82,33 @@ static msri_cells cells_of(const msri_field *f, const msri_object *object, int w
   return cells;
 }
 
+/* A stage past what is in the way. */
+static double step_past(const msri_pass *pass, const msri_stage *stage, const msri_object *object,
+                        const msri_cells *cells, msri_meet *meet) {
+  const double fastest = msri_meet_kick(pass, stage, cells, meet);
+  if (stage->motion.drift == 0) return fastest;
+  for (size_t r = 0; r < object->rows; r++)
+    msri_meet_drift(pass, stage, object->row + r, fastest, cells, r * length(object), meet);
+  return fastest;
+}
+
 double msri_patch_run(const msri_pass *pass, const msri_object *object, bool filled, bool kept,
-                      double *memory) {
+                      double *memory, uint64_t *met) {
   const msri_objects *objects = &pass->plan->objects;
   const size_t all = stride(msri_patch_cells(object), length(object));
   const msri_field f = msri_field_place(pass->ways, all, memory);
   msri_cells cells = cells_of(&f, object, pass->ways);
+  double *end = memory + msri_patch_size(pass->ways, false, object), fastest = 0;
+  msri_meet meet = {.met = met};
+  if (pass->meets) meet = msri_meet_place(cells.n, object->masses, end, met);
   place_pulls(pass, object, memory + msri_field_size(pass->ways, all), &cells);
-  if (!filled)
-    fill(pass, object, &f, memory + msri_patch_size(pass->ways, object) - marks_size(object));
-  double fastest = 0;
-  for (int s = 0; s < pass->stages; s++)
-    fastest = msri_max(msri_field_step(pass, &pass->stage[s], &cells), fastest);
+  if (!filled) fill(pass, object, &f, end - marks_size(object));
+  for (int s = 0; s < pass->stages; s++) {
+    const msri_stage *stage = &pass->stage[s];
+    const double speed = pass->meets ? step_past(pass, stage, object, &cells, &meet)
+                                     : msri_field_step(pass, stage, &cells);
+    fastest = msri_max(speed, fastest);
+  }
   for (size_t r = 0; r < object->rows && !kept; r++)
     msri_field_empty(&f, objects, object->row + r, pass->state, MSRI_MARGIN + r * length(object));
   return fastest;

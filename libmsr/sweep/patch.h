@@ -9,12 +9,13 @@
  * neighbour of the last mass of a row isn't the first of the next. */
 size_t msri_patch_cells(const msri_object *object);
 
-/* Doubles of memory for an object. */
-size_t msri_patch_size(int ways, const msri_object *object);
+/* Doubles of memory for an object; `meets`: something may be in its way. */
+size_t msri_patch_size(int ways, bool meets, const msri_object *object);
 
 /* Takes an object through all stages of a pass; what is in memory is `filled` with it already, or
- * is to be `kept` for the next pass. Returns the largest speed along an axis. */
+ * is to be `kept` for the next pass. Returns the largest speed along an axis, and counts
+ * collisions. */
 double msri_patch_run(const msri_pass *pass, const msri_object *object, bool filled, bool kept,
-                      double *memory);
+                      double *memory, uint64_t *met);
 
 #endif

@@ -4,6 +4,7 @@
 #include "sweep/rows.h"
 
 #include "base/team.h"
+#include "sweep/meet.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -27,6 +28,7 @@ typedef struct slot {
   bool in_place, single;
   msri_field at;
   island first;
+  msri_meet meet; /* if something may be in the way */
 } slot;
 
 /* A part's work. */
@@ -60,10 +62,16 @@ static size_t ties_size(size_t width) { return 4 * wide(width); }
 
 static size_t marks_size(size_t width) { return 2 * wide(width); }
 
+/* Accelerations are those of one row at a time. */
+static size_t meet_size(size_t width, int stages) {
+  return 2 * wide(width) + (size_t)(stages + 3) * MSRI_MEET_DEBT * wide(width);
+}
+
 /* The edge comes first: others look there. */
-size_t msri_rows_size(int ways, size_t width, int stages) {
-  return edge_size(width, stages) + pulls_size(ways, width, stages) + ties_size(width) +
-         marks_size(width) + (size_t)(stages + 3) * msri_field_size(ways, wide(width));
+size_t msri_rows_size(int ways, bool meets, size_t width, int stages) {
+  return (meets ? meet_size(width, stages) : 0) + edge_size(width, stages) +
+         pulls_size(ways, width, stages) + ties_size(width) + marks_size(width) +
+         (size_t)(stages + 3) * msri_field_size(ways, wide(width));
 }
 
 int msri_rows_stages(int ways, size_t width) {
@@ -158,6 +166,13 @@ static size_t first_piece(const wave *w, size_t row) {
   return w->pass->plan->objects.row[w->object->row + row];
 }
 
+/* Makes it one with the next. */
+static void join_island(const wave *w, size_t row, island *i) {
+  const size_t from = i->from;
+  find_island(w, row, i->next, i);
+  i->from = from;
+}
+
 static const slot *open_row(wave *w, size_t row) {
   slot *s = &w->slot[place_of(w, row)];
   if (s->row == row) return s;
@@ -165,6 +180,8 @@ static const slot *open_row(wave *w, size_t row) {
   s->in_place = w->in_place && !is_at_border(w, row);
   s->at = s->in_place ? row_in_place(w, row) : row_in_ring(w, row);
   find_island(w, row, first_piece(w, row), &s->first);
+  while (w->pass->meets && s->first.next < first_piece(w, row + 1)) /* as if it were one */
+    join_island(w, row, &s->first);
   s->single = s->first.next == first_piece(w, row + 1);
   return s;
 }
@@ -275,6 +292,16 @@ static bool is_left_behind(const wave *w, int stage, size_t row) {
   return row + 1 == end_row(w, stage) && w->part->number + 1 < w->part->parts;
 }
 
+static double step_past(wave *w, int stage, size_t row, const msri_cells *cells, island i) {
+  const msri_pass *pass = w->pass;
+  msri_meet *meet = &w->slot[place_of(w, row)].meet;
+  const double fastest = msri_meet_kick(pass, &pass->stage[stage], cells, meet);
+  if (pass->stage[stage].motion.drift != 0)
+    msri_meet_drift(pass, &pass->stage[stage], w->object->row + row, fastest, cells, 0 - i.from,
+                    meet);
+  return fastest;
+}
+
 static void step_row(wave *w, int stage, size_t row, bool pulls_only) {
   const msri_pass *pass = w->pass;
   const bool last = row + 1 == w->object->rows;
@@ -288,6 +315,8 @@ static void step_row(wave *w, int stage, size_t row, bool pulls_only) {
     const msri_cells cells = cells_of(w, stage, row, &i, &here->at, x, y);
     if (pulls_only)
       pass->kernel->of[pass->ways > MSRI_BELOW + 1].pull(&cells, &pass->stage[stage].motion);
+    else if (pass->meets)
+      w->fastest = msri_max(step_past(w, stage, row, &cells, i), w->fastest);
     else
       w->fastest = msri_max(msri_field_step(pass, &pass->stage[stage], &cells), w->fastest);
   } while (!here->single && find_island(w, row, i.next, &i));
@@ -326,7 +355,19 @@ static void run(wave *w) {
   }
 }
 
-double msri_rows_run(const msri_pass *pass, const msri_object *object, const msri_part *part) {
+static void place_slots(wave *w, double *memory, uint64_t *met) {
+  for (int n = 0; n < w->pass->stages + 3; n++) {
+    slot *s = &w->slot[n];
+    s->row = none;
+    if (!w->pass->meets) continue;
+    s->meet = msri_meet_place(0, w->wide,
+                              memory + 2 * w->wide + (size_t)n * MSRI_MEET_DEBT * w->wide, met);
+    s->meet.ax = memory, s->meet.ay = memory + w->wide;
+  }
+}
+
+double msri_rows_run(const msri_pass *pass, const msri_object *object, const msri_part *part,
+                     uint64_t *met) {
   const size_t width = object->width;
   double *memory = part->memory[part->number];
   wave w = {.pass = pass, .object = object, .part = part, .wide = wide(width)};
@@ -338,7 +379,7 @@ double msri_rows_run(const msri_pass *pass, const msri_object *object, const msr
   w.marks = w.ties + ties_size(width);
   w.marked[0] = w.marked[1] = none;
   w.ring = w.marks + marks_size(width);
-  for (int n = 0; n < ROWS; n++) w.slot[n].row = none;
+  place_slots(&w, memory + msri_rows_size(pass->ways, false, width, pass->stages), met);
   memset(w.pulls, 0, pulls_size(pass->ways, width, pass->stages) * sizeof *w.pulls);
   if (w.in_place) set_ties(&w);
   run(&w);

@@ -19,13 +19,15 @@ typedef struct msri_part {
   double *const *memory;    /* [parts]: of each */
 } msri_part;
 
-/* Doubles of memory for a part of an object of such width. */
-size_t msri_rows_size(int ways, size_t width, int stages);
+/* Doubles of memory for a part of an object of such width; `meets`: something may be in its way. */
+size_t msri_rows_size(int ways, bool meets, size_t width, int stages);
 
 /* As many stages as keep rows in cache. */
 int msri_rows_stages(int ways, size_t width);
 
-/* Takes a part through all stages of a pass. Returns the largest speed along an axis. */
-double msri_rows_run(const msri_pass *pass, const msri_object *object, const msri_part *part);
+/* Takes a part through all stages of a pass; an object that may meet something is one part. Returns
+ * the largest speed along an axis, and counts collisions. */
+double msri_rows_run(const msri_pass *pass, const msri_object *object, const msri_part *part,
+                     uint64_t *met);
 
 #endif

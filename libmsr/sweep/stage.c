@@ -21,7 +21,8 @@ static bool acts(const msri_joint *j) {
 
 uint64_t msri_course_stages(const msri_course *c) {
   const msri_joint end = msri_splitting_joint(c->plan->figures.integrator, drifts_of(c));
-  return c->steps * (uint64_t)drifts_of(c) + acts(&end);
+  const bool ends = acts(&end) || msri_plan_settles(c->plan);
+  return c->steps * (uint64_t)drifts_of(c) + ends;
 }
 
 static joints joints_of(const msri_course *c, uint64_t k) {
@@ -89,7 +90,8 @@ msri_stage msri_course_stage(const msri_course *c, uint64_t k, const msri_swept 
   m->w = 1 / c->plan->uniform_mass;
   if (at.n > 0) set_kicks(&at, damped, h, m->kick);
   const bool kicks = m->kick[0] != 0 || m->kick[1] != 0;
-  if (kicks) weigh(c, state, m->weight);
+  stage.forces = kicks || damped || msri_plan_settles(c->plan);
+  if (stage.forces) weigh(c, state, m->weight);
   m->keep[0] = m->keep[1] = 1;
   if (damped && at.n > 0) {
     damp(c, t, at.at[0].damp_back, state, m->air[0], &m->keep[0]);
@@ -97,7 +99,7 @@ msri_stage msri_course_stage(const msri_course *c, uint64_t k, const msri_swept 
   }
   if (k < c->steps * drifts)
     m->drift = msri_splitting_drift(c->plan->figures.integrator, (int)(k % drifts)) * h;
-  stage.kicks = kicks;
-  stage.forces = kicks || damped;
+  const size_t first = c->plan->n_terms;
+  for (size_t e = first; e < first + c->plan->n_contacts && m->drift != 0; e++) state->calls[e]++;
   return stage;
 }

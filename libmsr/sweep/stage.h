@@ -2,6 +2,7 @@
 #ifndef MSRI_STAGE_H
 #define MSRI_STAGE_H
 
+#include "contacts/armed.h"
 #include "forces/lattice.h"
 #include "plan/plan.h"
 
@@ -10,11 +11,11 @@ typedef struct msri_swept {
   double *x, *y, *vx, *vy; /* [masses] */
   char *scratch;           /* of the terms */
   uint64_t *calls;         /* of the effects, counted up */
+  msri_armed *armed;       /* of the objects' rows, if anything can be met */
 } msri_swept;
 
 typedef struct msri_stage {
-  bool kicks;  /* by forces */
-  bool forces; /* they are needed; else it only drifts */
+  bool forces; /* else it only drifts */
   msri_motion motion;
 } msri_stage;
 

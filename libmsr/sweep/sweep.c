@@ -21,8 +21,9 @@ enum {
 typedef struct worker {
   double *patch, *rows; /* for an object that it has to itself */
   double fastest;
+  uint64_t met;
   unsigned turn; /* see msri_sweep */
-  char apart[2 * LINE - 2 * sizeof(double *) - sizeof(double) - sizeof(unsigned)];
+  char apart[2 * LINE - 4 * sizeof(double *) - sizeof(unsigned)];
 } worker;
 
 struct msri_sweep {
@@ -56,9 +57,10 @@ static bool are_simple(const msr_plan *plan) {
 
 bool msri_plan_sweeps(const msr_plan *plan) {
   const msr_plan_figures *f = &plan->figures;
-  return msri_splitting_drifts(f->integrator) > 0 && !f->leaps && !msri_plan_meets(plan) &&
-         f->masses == plan->n_picture && plan->mesh.n_added == 0 && f->anchors == 0 &&
-         are_simple(plan);
+  const bool meets = msri_plan_meets(plan);
+  if (meets && (plan->discs || msri_plan_bounces(plan))) return false;
+  return msri_splitting_drifts(f->integrator) > 0 && !f->leaps && f->masses == plan->n_picture &&
+         plan->mesh.n_added == 0 && f->anchors == 0 && are_simple(plan);
 }
 
 /* ---- Who does what */
@@ -67,13 +69,14 @@ static bool is_small(const msr_plan *plan, const msri_object *object) {
   const size_t cells = msri_patch_cells(object);
   const bool dense = cells <= PATCH_CELLS && 4 * object->masses >= object->rows * object->width;
   const bool many = plan->objects.n >= 4 * (size_t)plan->threads;
-  return dense && (plan->threads == 1 || many || object->masses < SHARED_MASSES);
+  const bool shared = plan->threads > 1 && !many && !msri_plan_meets(plan);
+  return dense && (!shared || object->masses < SHARED_MASSES);
 }
 
 /* Parts of a large object: with fewer rows than twice the stages they'd be all wedge. */
 static unsigned parts_of(const msr_plan *plan, const msri_object *object, int depth) {
   const size_t most = object->rows / (2 * (size_t)depth);
-  if (object->masses < SHARED_MASSES || most < 2) return 1;
+  if (object->masses < SHARED_MASSES || most < 2 || msri_plan_meets(plan)) return 1;
   return most < plan->threads ? (unsigned)most : plan->threads;
 }
 
@@ -111,10 +114,10 @@ static room room_for(const msr_plan *plan) {
   for (size_t n = 0; n < o->n; n++) {
     const msri_object *object = &o->object[n];
     if (is_small(plan, object))
-      widen(&r.patch, msri_patch_size(ways, object));
+      widen(&r.patch, msri_patch_size(ways, msri_plan_meets(plan), object));
     else
       widen(parts_of(plan, object, r.depth) > 1 ? &r.parts : &r.rows,
-            msri_rows_size(ways, object->width, r.depth));
+            msri_rows_size(ways, msri_plan_meets(plan), object->width, r.depth));
   }
   r.patch = msri_round_up(r.patch, LINE / sizeof(double));
   r.rows = msri_round_up(r.rows, LINE / sizeof(double));
@@ -170,7 +173,8 @@ msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error
                            .kernel = msri_lattice_widest(),
                            .stage = made->stage,
                            .ways = ways_of(plan),
-                           .besides = besides_of(plan)};
+                           .besides = besides_of(plan),
+                           .meets = msri_plan_meets(plan)};
   place(made, &r);
   const msr_status status =
       plan->threads > 1 ? msri_team_create(plan->threads, &made->team, err) : MSR_OK;
@@ -190,10 +194,11 @@ void msri_sweep_free(msri_sweep *sweep) {
 /* ---- Passes */
 
 /* A part for a thread, once the one above needs nothing of what is left of the last. */
-static double run_part(msri_sweep *s, const msri_object *object, const msri_part *part) {
+static double run_part(msri_sweep *s, const msri_object *object, const msri_part *part,
+                       uint64_t *met) {
   const size_t p = part->number;
   if (p > 0) msri_team_wait(&s->closed[p - 1], part->turn - 1);
-  const double fastest = msri_rows_run(&s->pass, object, part);
+  const double fastest = msri_rows_run(&s->pass, object, part, met);
   atomic_store_explicit(&s->closed[p], part->turn, memory_order_release);
   return fastest;
 }
@@ -201,16 +206,17 @@ static double run_part(msri_sweep *s, const msri_object *object, const msri_part
 static double run_large(msri_sweep *s, const msri_object *object, unsigned thread, unsigned owner,
                         unsigned *turn) {
   const unsigned parts = parts_of(s->pass.plan, object, s->depth);
+  uint64_t *met = &s->worker[thread].met;
   size_t begin[MSRI_MOST_THREADS + 1];
   msri_part part = {.parts = parts, .begin = begin, .opened = s->opened, .memory = s->parts};
   for (size_t p = 0; p <= parts; p++) begin[p] = object->rows * p / parts;
   if (parts == 1) {
     part.memory = &s->worker[thread].rows;
-    return thread == owner ? msri_rows_run(&s->pass, object, &part) : 0;
+    return thread == owner ? msri_rows_run(&s->pass, object, &part, met) : 0;
   }
   part.turn = ++*turn;
   part.number = thread;
-  if (thread < parts) return run_part(s, object, &part);
+  if (thread < parts) return run_part(s, object, &part, met);
   atomic_store_explicit(&s->closed[thread], part.turn, memory_order_release);
   return 0;
 }
@@ -221,6 +227,7 @@ static void work(void *self, unsigned thread) {
   worker *me = &s->worker[thread];
   unsigned turn = s->turn;
   me->fastest = 0;
+  me->met = 0;
   for (size_t n = 0; n < objects->n; n++) {
     const msri_object *object = &objects->object[n];
     const unsigned owner = (unsigned)(n % s->threads);
@@ -228,44 +235,63 @@ static void work(void *self, unsigned thread) {
     if (!is_small(s->pass.plan, object))
       fastest = run_large(s, object, thread, owner, &turn);
     else if (owner == thread)
-      fastest = msri_patch_run(&s->pass, object, s->filled, s->kept, me->patch);
+      fastest = msri_patch_run(&s->pass, object, s->filled, s->kept, me->patch, &me->met);
     me->fastest = msri_worse(fastest, me->fastest);
   }
   me->turn = turn;
 }
 
 /* Takes the stages that are set. Returns the largest speed along an axis. */
-static double run_pass(msri_sweep *s) {
+static double run_pass(msri_sweep *s, uint64_t *met) {
   double fastest = 0;
   if (s->team)
     msri_team_run(s->team, work, s);
   else
     work(s, 0);
-  for (unsigned t = 0; t < s->threads; t++) fastest = msri_worse(s->worker[t].fastest, fastest);
+  for (unsigned t = 0; t < s->threads; t++) {
+    fastest = msri_worse(s->worker[t].fastest, fastest);
+    *met += s->worker[t].met;
+  }
   s->turn = s->worker[0].turn;
   return fastest;
 }
 
-msri_progress msri_sweep_run(msri_sweep *s, const msri_swept *state, msri_course course,
-                             double fastest) {
-  const uint64_t drifts = (uint64_t)msri_splitting_drifts(course.plan->figures.integrator);
-  msri_progress progress = {0};
-  s->pass.state = state;
-  for (uint64_t k = 0, end = msri_course_stages(&course); k < end;) {
+/* Takes a course, or until a mass moves faster than it may, and the step that was under way. */
+static void run_course(msri_sweep *s, msri_course *course, double fastest, msri_progress *p) {
+  const uint64_t drifts = (uint64_t)msri_splitting_drifts(course->plan->figures.integrator);
+  for (uint64_t k = 0, end = msri_course_stages(course); k < end;) {
     int n = 0;
     for (; n < s->depth && k < end; n++, k++) {
-      s->stage[n] = msri_course_stage(&course, k, state);
-      progress.evaluations += s->stage[n].kicks;
+      s->stage[n] = msri_course_stage(course, k, s->pass.state);
+      p->evaluations += s->stage[n].forces;
     }
     s->pass.stages = n;
     s->kept = s->alone && k < end;
-    const double speed = run_pass(s);
+    const double speed = run_pass(s, &p->met);
     s->filled = s->kept;
-    if (speed <= fastest || progress.fast || k == end) continue;
-    progress.fast = true; /* the step that is under way is the last */
-    course.steps = (k + drifts - 1) / drifts;
-    end = msri_course_stages(&course);
+    if (speed <= fastest || p->fast) continue;
+    p->fast = true;
+    if (k == end) continue;
+    course->steps = (k + drifts - 1) / drifts;
+    end = msri_course_stages(course);
   }
-  progress.steps = course.steps;
+  p->steps += course->steps;
+}
+
+/* Debts are paid within a pass: there, courses are as long as that. */
+msri_progress msri_sweep_run(msri_sweep *s, const msri_swept *state, msri_course course,
+                             double fastest) {
+  msri_progress progress = {0};
+  const uint64_t most = s->pass.meets ? (uint64_t)s->depth - 1 : course.steps;
+  const uint64_t substeps = course.plan->figures.substeps;
+  s->pass.state = state;
+  for (uint64_t left = course.steps; left > 0 && !progress.fast;) {
+    course.steps = left < most ? left : most;
+    const uint64_t steps = course.steps;
+    run_course(s, &course, fastest, &progress);
+    left -= steps;
+    course.iteration += (course.substep + steps) / substeps;
+    course.substep = (course.substep + steps) % substeps;
+  }
   return progress;
 }

@@ -19,8 +19,8 @@ size_t msri_sweep_bytes(const msr_plan *plan);
 
 /* What became of a run of steps. */
 typedef struct msri_progress {
-  uint64_t steps, evaluations; /* done */
-  bool fast;                   /* a mass moved faster than it should: steps ended early */
+  uint64_t steps, evaluations, met; /* done; collisions */
+  bool fast;                        /* a mass moved faster than it should: steps ended early */
 } msri_progress;
 
 /* Takes the steps of a course or, once a mass moves faster than `fastest` along an axis, fewer. */

@@ -1,0 +1,110 @@
+/* meet.c - see meet.h. Bits are those of a whole kick, a whole drift past the contact, and debts
+ * that are paid by the acceleration at the end of the step, before anything else happens there. */
+#include "sweep/meet.h"
+
+#include "base/vector.h"
+
+#include <math.h>
+
+msri_meet msri_meet_place(size_t cells, size_t masses, double *memory, uint64_t *met) {
+  double *before = memory + 2 * cells, *debts = before + 2 * masses;
+  return (msri_meet){.ax = memory,
+                     .ay = memory + cells,
+                     .before = before,
+                     .debts = {.debt = (void *)debts, .capacity = masses},
+                     .met = met};
+}
+
+/* ---- Kicks */
+
+/* What a kernel does to a velocity. */
+static double kicked(const msri_pass *pass, const msri_motion *m, int axis, double v, double a) {
+  v = v + m->kick[0] * a;
+  for (int n = 0; n < 2 && (pass->besides & MSRI_WITH_AIR); n++)
+    v = m->air[n][axis] + (v - m->air[n][axis]) * m->keep[n];
+  return v + m->kick[1] * a;
+}
+
+/* The kernel kicks all; those that are owed something are kicked again, from where they were. */
+double msri_meet_kick(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells,
+                      msri_meet *meet) {
+  const int eight = pass->ways > MSRI_BELOW + 1;
+  const msri_motion *m = &stage->motion;
+  msri_debts *debts = &meet->debts;
+  for (size_t d = 0; d < debts->n; d++) {
+    meet->before[2 * d] = cells->vx[debts->debt[d].mass];
+    meet->before[2 * d + 1] = cells->vy[debts->debt[d].mass];
+  }
+  double fastest = pass->kernel->of[eight].kick[pass->besides](cells, m, meet->ax, meet->ay);
+  for (size_t d = 0; d < debts->n; d++) {
+    const msri_debt *debt = &debts->debt[d];
+    const size_t c = debt->mass;
+    const double ax = meet->ax[c], ay = meet->ay[c];
+    cells->vx[c] = kicked(pass, m, 0, meet->before[2 * d] + debt->x * ax, ax);
+    cells->vy[c] = kicked(pass, m, 1, meet->before[2 * d + 1] + debt->y * ay, ay);
+    fastest = msri_max(msri_max(fabs(cells->vx[c]), fabs(cells->vy[c])), fastest);
+  }
+  debts->n = 0;
+  return fastest;
+}
+
+/* ---- Drifts */
+
+static msri_flock flock_of(const msri_cells *cells, const msri_meet *meet, size_t c, size_t n) {
+  return (msri_flock){.n = n,
+                      .first = c,
+                      .x = cells->x + c,
+                      .y = cells->y + c,
+                      .vx = cells->vx + c,
+                      .vy = cells->vy + c,
+                      .ux = cells->vx + c,
+                      .uy = cells->vy + c,
+                      .ax = meet->ax + c,
+                      .ay = meet->ay + c};
+}
+
+static double clearance_of(const msri_pass *pass, size_t row, const msri_cells *cells,
+                           size_t base) {
+  const msri_objects *o = &pass->plan->objects;
+  const msri_contact *contact = &pass->plan->contact;
+  double least = (double)INFINITY;
+  for (size_t p = o->row[row]; p < o->row[row + 1] && least > 0; p++) {
+    const size_t c = base + o->piece[p].column, n = o->piece[p].count;
+    least = msri_min(least, contact->clearance(contact->self, n, cells->x + c, cells->y + c));
+  }
+  return least;
+}
+
+static void drift_past(const msri_pass *pass, double h, size_t row, const msri_cells *cells,
+                       size_t base, msri_meet *meet) {
+  const msri_objects *o = &pass->plan->objects;
+  const msri_contact *contact = &pass->plan->contact;
+  msri_debts *debts = msri_plan_settles(pass->plan) ? &meet->debts : NULL;
+  for (size_t p = o->row[row]; p < o->row[row + 1]; p++) {
+    const msri_flock f = flock_of(cells, meet, base + o->piece[p].column, o->piece[p].count);
+    *meet->met += contact->drift(contact->self, h, &f, debts);
+  }
+}
+
+/* All cells from the first mass to the last. */
+static void drift_freely(const msri_pass *pass, double h, size_t row, const msri_cells *cells,
+                         size_t base) {
+  const msri_objects *o = &pass->plan->objects;
+  const msri_piece *first = &o->piece[o->row[row]], *last = &o->piece[o->row[row + 1] - 1];
+  const size_t c = base + first->column, n = last->column + last->count - first->column;
+  msri_add_scaled(n, h, cells->vx + c, cells->x + c);
+  msri_add_scaled(n, h, cells->vy + c, cells->y + c);
+}
+
+void msri_meet_drift(const msri_pass *pass, const msri_stage *stage, size_t row, double fastest,
+                     const msri_cells *cells, size_t base, msri_meet *meet) {
+  const double h = stage->motion.drift, way = fabs(h) * fastest;
+  msri_armed *armed = &pass->state->armed[row];
+  const bool knows = pass->plan->contact.clearance, waits = msri_armed_waits(armed);
+  if (knows && !waits && msri_armed_covers(armed, way)) {
+    drift_freely(pass, h, row, cells, base);
+    return;
+  }
+  drift_past(pass, h, row, cells, base, meet);
+  if (knows && !waits) msri_armed_earn(armed, way, clearance_of(pass, row, cells, base));
+}
