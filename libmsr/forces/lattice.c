@@ -14,7 +14,8 @@ typedef struct msri_task {
 typedef struct msri_place {
   size_t cell;
   double left[2];
-  double fastest; /* velocity along an axis so far */
+  double fastest; /* velocity along an axis so far; */
+  bool odd;       /* one was no number */
 } msri_place;
 
 #define LANES    1
@@ -71,14 +72,14 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
                                                            const msri_motion *motion) {            \
     msri_place place = {0};                                                                        \
     width(s, motion, &(msri_task){.ways = number, .besides = with}, &place);                       \
-    return place.fastest;                                                                          \
+    return place.odd ? (double)NAN : place.fastest;                                                \
   }
 #define KICK(target, width, number, with)                                                          \
   target static double kick_##width##_##number##_##with(                                           \
       const msri_cells *s, const msri_motion *motion, double *ax, double *ay) {                    \
     msri_place place = {0};                                                                        \
     width(s, motion, &(msri_task){.ways = number, .besides = with, .ax = ax, .ay = ay}, &place);   \
-    return place.fastest;                                                                          \
+    return place.odd ? (double)NAN : place.fastest;                                                \
   }
 #define KERNELS(target, width, number)                                                             \
   ADVANCE(target, width, number, 0)                                                                \

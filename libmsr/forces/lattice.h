@@ -47,7 +47,7 @@ typedef struct msri_lattice_kernel {
   bool (*runs_here)(void); /* has this machine got such vectors? NULL: every one has */
   struct {
     /* Forces, then kick, kick, drift; by what acts beside the springs. Returns the largest
-     * velocity along an axis, as far as it is a number. */
+     * velocity along an axis; NaN if one is. */
     double (*advance[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
     /* The same without the drift; accelerations go to ax, ay [n]. */
     double (*kick[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion, double *ax,

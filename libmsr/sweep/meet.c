@@ -42,7 +42,7 @@ double msri_meet_kick(const msri_pass *pass, const msri_stage *stage, const msri
     const double ax = meet->ax[c], ay = meet->ay[c];
     cells->vx[c] = kicked(pass, m, 0, meet->before[2 * d] + debt->x * ax, ax);
     cells->vy[c] = kicked(pass, m, 1, meet->before[2 * d + 1] + debt->y * ay, ay);
-    fastest = msri_max(msri_max(fabs(cells->vx[c]), fabs(cells->vy[c])), fastest);
+    fastest = msri_worse(msri_worse(fabs(cells->vx[c]), fabs(cells->vy[c])), fastest);
   }
   debts->n = 0;
   return fastest;

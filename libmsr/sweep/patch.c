@@ -107,7 +107,7 @@ double msri_patch_run(const msri_pass *pass, const msri_object *object, bool fil
     const msri_stage *stage = &pass->stage[s];
     const double speed = pass->meets ? step_past(pass, stage, object, &cells, &meet)
                                      : msri_field_step(pass, stage, &cells);
-    fastest = msri_max(speed, fastest);
+    fastest = msri_worse(speed, fastest);
   }
   for (size_t r = 0; r < object->rows && !kept; r++)
     msri_field_empty(&f, objects, object->row + r, pass->state, MSRI_MARGIN + r * length(object));

@@ -316,9 +316,9 @@ static void step_row(wave *w, int stage, size_t row, bool pulls_only) {
     if (pulls_only)
       pass->kernel->of[pass->ways > MSRI_BELOW + 1].pull(&cells, &pass->stage[stage].motion);
     else if (pass->meets)
-      w->fastest = msri_max(step_past(w, stage, row, &cells, i), w->fastest);
+      w->fastest = msri_worse(step_past(w, stage, row, &cells, i), w->fastest);
     else
-      w->fastest = msri_max(msri_field_step(pass, &pass->stage[stage], &cells), w->fastest);
+      w->fastest = msri_worse(msri_field_step(pass, &pass->stage[stage], &cells), w->fastest);
   } while (!here->single && find_island(w, row, i.next, &i));
   if (!last && !w->whole && pass->stage[stage].forces) clear_around(w, stage, row, here, below);
 }
