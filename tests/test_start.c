@@ -1,5 +1,6 @@
 /* test_start.c - from a scene to a plan: which pixel is which mass, springs in their order, bounds
  * of the stable step, and what is kept of all that. Fast ways are compared with the simplest. */
+#include "plan/objects.h"
 #include "scenes.h"
 
 #include "forces/mesh.h"
@@ -274,15 +275,17 @@ static size_t plan_bytes(msr_scene *scene) {
   return bytes;
 }
 
-/* Colours, a bit for supports, a number for each row, names and reasons, and runs: two for each row
- * of a full picture, or four with diagonals; of others what there are. */
+/* Colours, a bit and a byte for supports, a number for each row, names and reasons, and runs: two
+ * for each row of a full picture, or four with diagonals; of others what there are. Rows of objects
+ * and their pieces aren't more than rows and runs. */
 static void check_bytes(const drawing *d, msr_picture *picture) {
   const size_t rest = 3 * d->width * d->height + d->height * sizeof(size_t);
   world w = open_world(scene_with(d, picture), NULL, 0);
   const size_t runs = msr_state_view(w.state).springs->n_runs;
   if (d->longest == 0) assert_int_equal(runs, (d->height - 1) * (size_t)d->neighbours / 2 + 1);
   assert_in_range(msr_plan_describe(w.plan).plan_bytes, rest,
-                  rest + d->width * d->height / 8 + runs * sizeof(msr_run_of_springs) + 8192);
+                  rest + d->width * d->height * 9 / 8 + d->height * sizeof(size_t) + 8192 +
+                      runs * (sizeof(msr_run_of_springs) + sizeof(msri_piece)));
   close_world(w);
   msr_picture_free(picture);
 }
