@@ -117,7 +117,9 @@ static void arrange(const finds *f, extent *of, msri_objects *o) {
     const size_t row = o->object[e->number].row + (from->row - e->top);
     const bool first = s == from->parent || o->row[row] == SIZE_MAX;
     if (first) o->row[row] = e->next;
-    o->piece[e->next++] = (msri_piece){from->first, from->column - e->left, from->count};
+    o->piece[e->next++] =
+        (msri_piece){from->first, from->column - e->left, from->count, o->n_blocks};
+    o->n_blocks += msri_flock_blocks(from->count);
   }
   o->row[o->n_rows] = f->n;
 }

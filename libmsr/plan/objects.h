@@ -2,12 +2,13 @@
 #ifndef MSRI_OBJECTS_H
 #define MSRI_OBJECTS_H
 
-#include "base/base.h"
+#include "contacts/flock.h"
 
 /* Masses first .. first+count-1, side by side in a row from a column of the object on. */
 typedef struct msri_piece {
   size_t first;
   uint32_t column, count;
+  size_t block; /* of MSRI_FLOCK_BLOCK masses, the last of fewer: the first of the piece's */
 } msri_piece;
 
 /* Rows row .. row+rows-1 of msri_objects.row. */
@@ -21,7 +22,7 @@ typedef struct msri_objects {
   msri_object *object; /* [n] in the order of their first masses */
   size_t *row;         /* [n_rows + 1]: the first piece of each row, from the top */
   msri_piece *piece;   /* [row[n_rows]] from the left */
-  size_t n, n_rows;
+  size_t n, n_rows, n_blocks;
 } msri_objects;
 
 /* Those of a picture, with springs to 4 or 8 neighbours. MSR_ENOMEM: then nothing is left. */

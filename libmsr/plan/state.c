@@ -51,7 +51,7 @@ static void place_room(msr_state *state, const room *r, const msri_graph *graph,
 
 static size_t armed_bytes(const msr_plan *plan) {
   const size_t n = plan->figures.masses;
-  const size_t ranges = msri_plan_sweeps(plan) ? plan->objects.n_rows : msri_flock_blocks(n);
+  const size_t ranges = msri_plan_sweeps(plan) ? plan->objects.n_blocks : msri_flock_blocks(n);
   return ranges * sizeof(msri_armed);
 }
 

@@ -63,48 +63,52 @@ static msri_flock flock_of(const msri_cells *cells, const msri_meet *meet, size_
                       .ay = meet->ay + c};
 }
 
-static double clearance_of(const msri_pass *pass, size_t row, const msri_cells *cells,
-                           size_t base) {
-  const msri_objects *o = &pass->plan->objects;
-  const msri_contact *contact = &pass->plan->contact;
-  double least = (double)INFINITY;
-  for (size_t p = o->row[row]; p < o->row[row + 1] && least > 0; p++) {
-    const size_t c = base + o->piece[p].column, n = o->piece[p].count;
-    least = msri_min(least, contact->clearance(contact->self, n, cells->x + c, cells->y + c));
-  }
-  return least;
+/* Masses of a piece that are armed together, from its k-th on. */
+typedef struct block {
+  size_t cell, n;
+  msri_armed *armed;
+} block;
+
+static block block_of(const msri_pass *pass, const msri_piece *piece, size_t base, size_t k) {
+  const size_t left = piece->count - k, n = left < MSRI_FLOCK_BLOCK ? left : MSRI_FLOCK_BLOCK;
+  return (block){base + piece->column + k, n,
+                 &pass->state->armed[piece->block + k / MSRI_FLOCK_BLOCK]};
 }
 
-static void drift_past(const msri_pass *pass, double h, size_t row, const msri_cells *cells,
-                       size_t base, msri_meet *meet) {
-  const msri_objects *o = &pass->plan->objects;
-  const msri_contact *contact = &pass->plan->contact;
-  msri_debts *debts = msri_plan_settles(pass->plan) ? &meet->debts : NULL;
-  for (size_t p = o->row[row]; p < o->row[row + 1]; p++) {
-    const msri_flock f = flock_of(cells, meet, base + o->piece[p].column, o->piece[p].count);
-    *meet->met += contact->drift(contact->self, h, &f, debts);
-  }
+static void drift_freely(double h, const msri_cells *cells, const block *b) {
+  msri_add_scaled(b->n, h, cells->vx + b->cell, cells->x + b->cell);
+  msri_add_scaled(b->n, h, cells->vy + b->cell, cells->y + b->cell);
 }
 
-/* All cells from the first mass to the last. */
-static void drift_freely(const msri_pass *pass, double h, size_t row, const msri_cells *cells,
-                         size_t base) {
-  const msri_objects *o = &pass->plan->objects;
-  const msri_piece *first = &o->piece[o->row[row]], *last = &o->piece[o->row[row + 1] - 1];
-  const size_t c = base + first->column, n = last->column + last->count - first->column;
-  msri_add_scaled(n, h, cells->vx + c, cells->x + c);
-  msri_add_scaled(n, h, cells->vy + c, cells->y + c);
+static void drift_past(const msri_pass *pass, double h, const msri_cells *cells, const block *b,
+                       msri_meet *meet) {
+  const msri_contact *contact = &pass->plan->contact;
+  const msri_flock f = flock_of(cells, meet, b->cell, b->n);
+  *meet->met +=
+      contact->drift(contact->self, h, &f, msri_plan_settles(pass->plan) ? &meet->debts : NULL);
+}
+
+static void drift(const msri_pass *pass, double h, double way, const msri_cells *cells,
+                  const block *b, msri_meet *meet) {
+  const msri_contact *contact = &pass->plan->contact;
+  const bool knows = contact->clearance, waits = knows && msri_armed_waits(b->armed);
+  if (knows && !waits && msri_armed_covers(b->armed, way)) {
+    drift_freely(h, cells, b);
+    return;
+  }
+  drift_past(pass, h, cells, b, meet);
+  if (!knows || waits) return;
+  const double *x = cells->x + b->cell, *y = cells->y + b->cell;
+  msri_armed_earn(b->armed, way, contact->clearance(contact->self, b->n, x, y));
 }
 
 void msri_meet_drift(const msri_pass *pass, const msri_stage *stage, size_t row, double fastest,
                      const msri_cells *cells, size_t base, msri_meet *meet) {
   const double h = stage->motion.drift, way = fabs(h) * fastest;
-  msri_armed *armed = &pass->state->armed[row];
-  const bool knows = pass->plan->contact.clearance, waits = msri_armed_waits(armed);
-  if (knows && !waits && msri_armed_covers(armed, way)) {
-    drift_freely(pass, h, row, cells, base);
-    return;
-  }
-  drift_past(pass, h, row, cells, base, meet);
-  if (knows && !waits) msri_armed_earn(armed, way, clearance_of(pass, row, cells, base));
+  const msri_objects *o = &pass->plan->objects;
+  for (size_t p = o->row[row]; p < o->row[row + 1]; p++)
+    for (size_t k = 0; k < o->piece[p].count; k += MSRI_FLOCK_BLOCK) {
+      const block b = block_of(pass, &o->piece[p], base, k);
+      drift(pass, h, way, cells, &b, meet);
+    }
 }
