@@ -11,7 +11,7 @@
 #include <string.h>
 
 enum {
-  PATCH_CELLS = 8192,  /* of a small object: they fit into a core's cache */
+  PATCH_CELLS = 12288, /* of a small object: they fit into a core's cache */
   SHARED_MASSES = 512, /* of an object that is worth sharing among threads */
   LEAST_STAGES = 4,    /* of a pass: fewer would have threads wait for each other too often */
   LINE = 64            /* of the cache, and the widest vector */
