@@ -99,12 +99,16 @@ static void set_ties(const wave *w) {
   }
 }
 
+static size_t first_mass(const wave *w, size_t row) {
+  const msri_objects *o = &w->pass->plan->objects;
+  return o->piece[o->row[w->object->row + row]].first;
+}
+
 static msri_field row_in_place(const wave *w, size_t row) {
   static const int below[MSRI_WAYS] = {
       [MSRI_BELOW] = TO_ALL, [MSRI_BELOW_LEFT] = TO_LEFT, [MSRI_BELOW_RIGHT] = TO_RIGHT};
-  const msri_objects *o = &w->pass->plan->objects;
   const msri_swept *state = w->pass->state;
-  const size_t first = o->piece[o->row[w->object->row + row]].first;
+  const size_t first = first_mass(w, row);
   const bool last = row + 1 == w->object->rows;
   msri_field f = {w->wide,           state->x + first,  state->y + first,
                   state->vx + first, state->vy + first, {ties_at(w, TO_RIGHT)}};
@@ -143,10 +147,17 @@ static msri_field row_in_ring(wave *w, size_t row) {
   return f;
 }
 
-/* Rows that the part below has been at are looked at beyond their end, where it may be at work. */
+/* Rows are looked at beyond their ends, where other threads may be at work: the part below at those
+ * that it has been at; at other objects in what isn't the end of the row before, and the beginning
+ * of the next. */
 static bool is_at_border(const wave *w, size_t row) {
   const msri_part *part = w->part;
-  return part->number + 1 < part->parts && row + 1 >= part->begin[part->number + 1];
+  const size_t n = w->object->width;
+  if (w->pass->plan->threads == 1) return false;
+  if (part->number + 1 < part->parts && row + 1 >= part->begin[part->number + 1]) return true;
+  const bool last = row + 1 == w->object->rows;
+  return last || first_mass(w, row + 1) != first_mass(w, row) + n ||
+         (row > 0 && first_mass(w, row) != first_mass(w, row - 1) + n);
 }
 
 /* The first island of a row from piece s on. */
