@@ -1,10 +1,15 @@
 /* test_sweep.c - steps row by row have the same bits as steps of all masses at once, which a force
- * of one's own that does nothing brings back: whatever the shape, method, threads and pieces. */
+ * of one's own that does nothing brings back: whatever the shape, method, threads and pieces.
+ *
+ * link: --wrap=pthread_create */
 #include "plan/plan.h"
 #include "sweep/sweep.h"
 
 #include "files.h"
 #include "shapes.h"
+
+#include <errno.h>
+#include <pthread.h>
 
 /* ---- The same scene by both ways */
 
@@ -343,6 +348,39 @@ static void crushes_go_on_with_care(void **state) {
   close_world(due);
 }
 
+/* ---- Threads that the system doesn't give */
+
+typedef void *thread_function(void *self);
+int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attr, thread_function *function,
+                          void *self);
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr, thread_function *function,
+                          void *self);
+
+static bool refused;
+
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr, thread_function *function,
+                          void *self) {
+  return refused ? EAGAIN : __real_pthread_create(thread, attr, function, self);
+}
+
+/* A state needs them, a plan doesn't; one that has no use for them doesn't ask. */
+static void threads_may_be_refused(void **state) {
+  (void)state;
+  const trial t = trial_of(1);
+  world w = open_by(&t, 3);
+  msr_state *none = NULL;
+  refused = true;
+  assert_int_equal(msr_state_create(w.plan, &none, &why), MSR_ENOMEM);
+  assert_null(none);
+  assert_non_null(strstr(why.message, "threads"));
+  msr_scene *scene = scene_by(&t);
+  add_force(scene, &nothing, NULL);
+  world alone = open_world_with(scene, &(msr_plan_options){.threads = 3});
+  refused = false;
+  close_world(alone);
+  close_world(w);
+}
+
 /* ---- What is seen between steps */
 
 typedef struct witness {
@@ -411,6 +449,7 @@ int main(void) {
       cmocka_unit_test(work_is_counted),
       cmocka_unit_test(explosions_are_told),
       cmocka_unit_test(crushes_go_on_with_care),
+      cmocka_unit_test(threads_may_be_refused),
       cmocka_unit_test(polls_see_whole_states),
   };
   return cmocka_run_group_tests(tests, make_directory, remove_directory);

@@ -104,16 +104,21 @@ static size_t first_mass(const wave *w, size_t row) {
   return o->piece[o->row[w->object->row + row]].first;
 }
 
-static msri_field row_in_place(const wave *w, size_t row) {
+static void tie_as_all(const wave *w, size_t row, msri_field *f) {
   static const int below[MSRI_WAYS] = {
       [MSRI_BELOW] = TO_ALL, [MSRI_BELOW_LEFT] = TO_LEFT, [MSRI_BELOW_RIGHT] = TO_RIGHT};
+  const bool last = row + 1 == w->object->rows;
+  f->k[MSRI_RIGHT] = ties_at(w, TO_RIGHT);
+  for (int way = MSRI_BELOW; way < w->pass->ways; way++)
+    f->k[way] = ties_at(w, last ? TO_NONE : below[way]);
+}
+
+static msri_field row_in_place(const wave *w, size_t row) {
   const msri_swept *state = w->pass->state;
   const size_t first = first_mass(w, row);
-  const bool last = row + 1 == w->object->rows;
   msri_field f = {w->wide,           state->x + first,  state->y + first,
-                  state->vx + first, state->vy + first, {ties_at(w, TO_RIGHT)}};
-  for (int way = MSRI_BELOW; way < w->pass->ways; way++)
-    f.k[way] = ties_at(w, last ? TO_NONE : below[way]);
+                  state->vx + first, state->vy + first, {NULL}};
+  tie_as_all(w, row, &f);
   return f;
 }
 
@@ -135,15 +140,23 @@ static const double *marks_of(wave *w, size_t row) {
   return marks;
 }
 
+static void tie_by_marks(wave *w, size_t row, msri_field *f) {
+  const int ways = w->pass->ways;
+  msri_field_tie(f, marks_of(w, row), marks_of(w, row + 1), ways, MSRI_MARGIN, w->object->width);
+  for (int way = 0; way < ways; way++) f->k[way] += MSRI_MARGIN;
+}
+
 static msri_field row_in_ring(wave *w, size_t row) {
   const int ways = w->pass->ways;
-  const size_t n = w->object->width, size = msri_field_size(ways, w->wide);
+  const size_t size = msri_field_size(ways, w->wide);
   msri_field f = msri_field_place(ways, w->wide, w->ring + place_of(w, row) * size);
   msri_field_fill(&f, &w->pass->plan->objects, w->object->row + row, w->pass->state, MSRI_MARGIN,
-                  n);
-  msri_field_tie(&f, marks_of(w, row), marks_of(w, row + 1), ways, MSRI_MARGIN, n);
+                  w->object->width);
   f.x += MSRI_MARGIN, f.y += MSRI_MARGIN, f.vx += MSRI_MARGIN, f.vy += MSRI_MARGIN;
-  for (int way = 0; way < ways; way++) f.k[way] += MSRI_MARGIN;
+  if (w->whole)
+    tie_as_all(w, row, &f);
+  else
+    tie_by_marks(w, row, &f);
   return f;
 }
 
