@@ -77,7 +77,7 @@ size_t msri_rows_size(int ways, bool meets, size_t width, int stages) {
 int msri_rows_stages(int ways, size_t width) {
   const size_t row = (4 + pulls_of_row(ways)) * wide(width);
   const size_t stages = cache / (row * sizeof(double));
-  return stages < 1 ? 1 : stages > MSRI_MOST_STAGES ? MSRI_MOST_STAGES : (int)stages;
+  return stages < 2 ? 2 : stages > MSRI_MOST_STAGES ? MSRI_MOST_STAGES : (int)stages;
 }
 
 /* ---- Springs of a whole rectangle: the same in each row */

@@ -14,6 +14,7 @@ enum {
   PATCH_CELLS = 12288, /* of a small object: they fit into a core's cache */
   SHARED_MASSES = 512, /* of an object that is worth sharing among threads */
   LEAST_STAGES = 4,    /* of a pass: fewer would have threads wait for each other too often */
+  LOOK = 64,           /* stages between two looks at speeds */
   LINE = 64            /* of the cache, and the widest vector */
 };
 
@@ -83,7 +84,7 @@ static unsigned parts_of(const msr_plan *plan, const msri_object *object, int de
 static int depth_for(const msr_plan *plan, const msri_object *object, int ways) {
   const int stages = msri_rows_stages(ways, object->width);
   const size_t shared = object->rows / (2 * (size_t)plan->threads);
-  if (plan->threads == 1 || shared >= (size_t)stages) return stages;
+  if (plan->threads == 1 || msri_plan_meets(plan) || shared >= (size_t)stages) return stages;
   return shared > LEAST_STAGES ? (int)shared : stages < LEAST_STAGES ? stages : LEAST_STAGES;
 }
 
@@ -256,26 +257,40 @@ static double run_pass(msri_sweep *s, uint64_t *met) {
   return fastest;
 }
 
-/* Takes a course, or until a mass moves faster than it may, and the step that was under way. */
-static void run_course(msri_sweep *s, msri_course *course, double fastest, msri_progress *p) {
+/* The stages of a pass from k on; none goes beyond the next look at speeds. */
+static void set_stages(msri_sweep *s, const msri_course *course, uint64_t k, uint64_t end,
+                       msri_progress *p) {
+  const uint64_t look = k + LOOK - k % LOOK, last = look < end ? look : end;
+  int n = 0;
+  for (; n < s->depth && k + (uint64_t)n < last; n++) {
+    s->stage[n] = msri_course_stage(course, k + (uint64_t)n, s->pass.state);
+    p->evaluations += s->stage[n].forces;
+  }
+  s->pass.stages = n;
+}
+
+/* The step that is under way after k stages is the last, or the next one if none is: a last pass
+ * takes masses out of their patches. */
+static void end_early(msri_course *course, uint64_t k) {
   const uint64_t drifts = (uint64_t)msri_splitting_drifts(course->plan->figures.integrator);
+  course->steps = (k + drifts - 1) / drifts;
+  if (msri_course_stages(course) == k) course->steps++;
+}
+
+/* Takes a course or, once a mass moves faster than it may, a part of it. When speeds are looked at
+ * doesn't depend on how long passes are, and so not on threads. */
+static void run_course(msri_sweep *s, msri_course *course, double fastest, msri_progress *p) {
+  double speed = 0;
   for (uint64_t k = 0, end = msri_course_stages(course); k < end;) {
-    int n = 0;
-    for (; n < s->depth && k < end; n++, k++) {
-      s->stage[n] = msri_course_stage(course, k, s->pass.state);
-      p->evaluations += s->stage[n].forces;
-    }
-    s->pass.stages = n;
+    set_stages(s, course, k, end, p);
+    k += (uint64_t)s->pass.stages;
     s->kept = s->alone && k < end;
-    const double speed = run_pass(s, &p->met);
+    speed = msri_worse(run_pass(s, &p->met), speed);
     s->filled = s->kept;
-    if (speed <= fastest || p->fast) continue;
+    if ((k % LOOK > 0 && k < end) || speed <= fastest || p->fast) continue;
     p->fast = true;
     if (k == end) continue;
-    course->steps = (k + drifts - 1) / drifts;
-    end = msri_course_stages(course);
-    if (end > k) continue;
-    course->steps++; /* a last pass takes masses out of their patches */
+    end_early(course, k);
     end = msri_course_stages(course);
   }
   p->steps += course->steps;
