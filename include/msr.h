@@ -215,7 +215,8 @@ typedef struct msr_force {
   msr_status (*rates)(const void *self, const msr_view *s, double *omega2, double *gamma);
   /* For a force on which neither place nor velocity nor time has a say: adds that on a mass of
    * s->m[0] to f[2], x and y. Beside springs of a picture there may be one such force and one with
-   * relax; then states of methods that split step faster, row by row. NULL: it isn't such a one. */
+   * relax, not the same; then states of methods that split step faster, row by row. NULL: it isn't
+   * such a one. */
   void (*uniform)(const void *self, const msr_view *s, double *f);
   /* For a flow that draws all velocities to one, u[2]: v = u + (v - u) keep in a time h [s],
    * exactly as flow() would; it fills u and returns keep. Only t, m and n of s are given. NULL:
@@ -739,15 +740,15 @@ MSR_API uint64_t msr_state_iteration(const msr_state *state);
 
 /* Advances to `iterations` of DT from here. Methods that split take an evaluation of the forces
  * more in each call where they step row by row (see msr_plan_options.threads): a call is better of
- * many iterations than of one. The guard looks at speeds every 16 steps, and at all
- * energies every 256: MSR_EUNSTABLE names the mass, its longest spring, the time and a step that is
- * stable. With figures.care, x, y, vx, vy are kept every 64 iterations (128 of two steps, 256 of
- * one); once 2 % of what the scene had to give came from nowhere, or was lost where nothing takes
- * any, or the guard refuses the state, it goes back to what was kept, and comes here by steps of
- * that method, over four substeps at most, or less where equations can't be solved. They keep the
- * energy and cost tens of times more; what is crushed at the start begins so. Bits don't depend on
- * how steps are grouped. MSR_ENOMEM if there is no memory for such steps: the state may be stepped
- * again. Or what a force returns. */
+ * many iterations than of one. The guard looks at speeds every 16 steps, or 64 stages of them where
+ * they are taken row by row, and at all energies every 256: MSR_EUNSTABLE names the mass, its
+ * longest spring, the time and a step that is stable. With figures.care, x, y, vx, vy are kept
+ * every 64 iterations (128 of two steps, 256 of one); once 2 % of what the scene had to give came
+ * from nowhere, or was lost where nothing takes any, or the guard refuses the state, it goes back
+ * to what was kept, and comes here by steps of that method, over four substeps at most, or less
+ * where equations can't be solved. They keep the energy and cost tens of times more; what is
+ * crushed at the start begins so. Bits don't depend on how steps are grouped. MSR_ENOMEM if there
+ * is no memory for such steps: the state may be stepped again. Or what a force returns. */
 MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err);
 
 /* The guard: what a driving force returns, or MSR_EUNSTABLE if a number or an energy isn't finite
@@ -866,9 +867,10 @@ MSR_API msr_status msr_sink_close(msr_sink *sink, msr_error *err);
 typedef struct msr_run_options {
   const msr_sink *sinks; /* [n_sinks], each given every frame in turn; then they complete it */
   size_t n_sinks;
-  /* Called with the state before every substep and every stretch of long steps, which is an
-   * iteration or a part of it (NULL: none); a status other than MSR_OK ends the run and comes back
-   * unchanged. Running the state again goes on from there. */
+  /* Called with the state before every substep, every run of up to 257 steps that is taken row by
+   * row (see msr_plan_options.threads) and every stretch of long steps, which is an iteration or a
+   * part of it (NULL: none); a status other than MSR_OK ends the run and comes back unchanged.
+   * Running the state again goes on from there. */
   msr_status (*poll)(void *data, const msr_state *state);
   void *data;
   /* 2 or more: frames are completed by the sinks in a thread that lasts as long as the run, beside

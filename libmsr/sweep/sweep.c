@@ -49,7 +49,7 @@ static bool are_simple(const msr_plan *plan) {
   if (plan->n_terms == 0 || plan->term[0].force != &msr_force_springs) return false;
   for (size_t i = 1; i < plan->n_terms; i++) {
     const msr_force *force = plan->term[i].force;
-    if (!force->uniform && !force->relax) return false;
+    if (!force->uniform == !force->relax || (force->relax && force->conservative)) return false;
     uniform += force->uniform != NULL;
     relax += force->relax != NULL;
   }
