@@ -6,13 +6,13 @@
 
 #include <math.h>
 
-msri_meet msri_meet_place(size_t cells, size_t masses, double *memory, uint64_t *met) {
+msri_meet msri_meet_place(size_t cells, size_t masses, double *memory, msri_tally *tally) {
   double *before = memory + 2 * cells, *debts = before + 2 * masses;
   return (msri_meet){.ax = memory,
                      .ay = memory + cells,
                      .before = before,
                      .debts = {.debt = (void *)debts, .capacity = masses},
-                     .met = met};
+                     .tally = tally};
 }
 
 /* ---- Kicks */
@@ -82,7 +82,7 @@ static void drift_past(const msri_pass *pass, double h, size_t row, const msri_c
   msri_debts *debts = msri_plan_settles(pass->plan) ? &meet->debts : NULL;
   for (size_t p = o->row[row]; p < o->row[row + 1]; p++) {
     const msri_flock f = flock_of(cells, meet, base + o->piece[p].column, o->piece[p].count);
-    *meet->met += contact->drift(contact->self, h, &f, debts);
+    meet->tally->met += contact->drift(contact->self, h, &f, debts);
   }
 }
 
@@ -96,8 +96,8 @@ static void drift_freely(const msri_pass *pass, double h, size_t row, const msri
   msri_add_scaled(n, h, cells->vy + c, cells->y + c);
 }
 
-void msri_meet_drift(const msri_pass *pass, const msri_stage *stage, size_t row, double fastest,
-                     const msri_cells *cells, size_t base, msri_meet *meet) {
+static void drift(const msri_pass *pass, const msri_stage *stage, size_t row, double fastest,
+                  const msri_cells *cells, size_t base, msri_meet *meet) {
   const double h = stage->motion.drift, way = fabs(h) * fastest;
   msri_armed *armed = &pass->state->armed[row];
   const bool knows = pass->plan->contact.clearance, waits = msri_armed_waits(armed);
@@ -107,4 +107,12 @@ void msri_meet_drift(const msri_pass *pass, const msri_stage *stage, size_t row,
   }
   drift_past(pass, h, row, cells, base, meet);
   if (knows && !waits) msri_armed_earn(armed, way, clearance_of(pass, row, cells, base));
+}
+
+void msri_meet_drift(const msri_pass *pass, const msri_stage *stage, size_t row, double fastest,
+                     const msri_cells *cells, size_t base, msri_meet *meet) {
+  const bool timed = meet->tally->timed && msri_tally_is_turn(meet->tally);
+  const double start = timed ? msri_clock_now() : 0;
+  drift(pass, stage, row, fastest, cells, base, meet);
+  if (timed) msri_tally_drift(meet->tally, start);
 }
