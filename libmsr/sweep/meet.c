@@ -96,8 +96,8 @@ static void drift_freely(const msri_pass *pass, double h, size_t row, const msri
   msri_add_scaled(n, h, cells->vy + c, cells->y + c);
 }
 
-static void drift(const msri_pass *pass, const msri_stage *stage, size_t row, double fastest,
-                  const msri_cells *cells, size_t base, msri_meet *meet) {
+void msri_meet_drift(const msri_pass *pass, const msri_stage *stage, size_t row, double fastest,
+                     const msri_cells *cells, size_t base, msri_meet *meet) {
   const double h = stage->motion.drift, way = fabs(h) * fastest;
   msri_armed *armed = &pass->state->armed[row];
   const bool knows = pass->plan->contact.clearance, waits = msri_armed_waits(armed);
@@ -107,12 +107,4 @@ static void drift(const msri_pass *pass, const msri_stage *stage, size_t row, do
   }
   drift_past(pass, h, row, cells, base, meet);
   if (knows && !waits) msri_armed_earn(armed, way, clearance_of(pass, row, cells, base));
-}
-
-void msri_meet_drift(const msri_pass *pass, const msri_stage *stage, size_t row, double fastest,
-                     const msri_cells *cells, size_t base, msri_meet *meet) {
-  const bool timed = meet->tally->timed && msri_tally_is_turn(meet->tally);
-  const double start = timed ? msri_clock_now() : 0;
-  drift(pass, stage, row, fastest, cells, base, meet);
-  if (timed) msri_tally_drift(meet->tally, start);
 }

@@ -85,10 +85,14 @@ static msri_cells cells_of(const msri_field *f, const msri_object *object, int w
 /* A stage past what is in the way. */
 static double step_past(const msri_pass *pass, const msri_stage *stage, const msri_object *object,
                         const msri_cells *cells, msri_meet *meet) {
+  msri_tally *tally = meet->tally;
+  const bool timed = msri_tally_is_turn(tally);
+  double start = timed ? msri_clock_now() : 0;
   const double fastest = msri_meet_kick(pass, stage, cells, meet);
-  if (stage->motion.drift == 0) return fastest;
-  for (size_t r = 0; r < object->rows; r++)
+  if (timed) start = msri_tally_add(tally, start, &tally->kicks);
+  for (size_t r = 0; r < object->rows && stage->motion.drift != 0; r++)
     msri_meet_drift(pass, stage, object->row + r, fastest, cells, r * length(object), meet);
+  if (timed) msri_tally_add(tally, start, &tally->drifts);
   return fastest;
 }
 

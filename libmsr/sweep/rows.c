@@ -295,10 +295,15 @@ static bool is_left_behind(const wave *w, int stage, size_t row) {
 static double step_past(wave *w, int stage, size_t row, const msri_cells *cells, island i) {
   const msri_pass *pass = w->pass;
   msri_meet *meet = &w->slot[place_of(w, row)].meet;
+  msri_tally *tally = meet->tally;
+  const bool timed = msri_tally_is_turn(tally);
+  double start = timed ? msri_clock_now() : 0;
   const double fastest = msri_meet_kick(pass, &pass->stage[stage], cells, meet);
+  if (timed) start = msri_tally_add(tally, start, &tally->kicks);
   if (pass->stage[stage].motion.drift != 0)
     msri_meet_drift(pass, &pass->stage[stage], w->object->row + row, fastest, cells, 0 - i.from,
                     meet);
+  if (timed) msri_tally_add(tally, start, &tally->drifts);
   return fastest;
 }
 

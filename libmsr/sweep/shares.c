@@ -3,7 +3,7 @@
  * are timed on a copy of some rows. The forces below alone, times springs over springs below, are
  * the springs' share; what a weight, then air, makes a loop longer is theirs, which may be nothing;
  * the rest, and copying rows in and out, the integrator's. Drifts past what is in the way are timed
- * where they are (tally.h). */
+ * where they are, and so are the kicks before them (tally.h). */
 #include "sweep/shares.h"
 
 #include "sweep/patch.h"
@@ -110,6 +110,7 @@ static void add(msri_shares *s, const msri_pass *pass, const double *took, doubl
   part[MSRI_SHARE_MOTION] = pass->stages * bare - part[MSRI_SHARE_SPRINGS] + copying;
   for (int n = 0; n < MSRI_SHARES; n++) all += part[n];
   for (int n = 0; n < MSRI_SHARES; n++) s->share[n] += part[n] / all;
+  s->copying += copying / all;
 }
 
 void msri_shares_measure(msri_shares *s, const msri_pass *pass) {
@@ -129,23 +130,18 @@ void msri_shares_measure(msri_shares *s, const msri_pass *pass) {
 
 /* ---- Whose time it is */
 
-static double of_all(const msri_shares *s, int which) {
+void msri_shares_split(msri_shares *s, const msr_plan *plan, double spent, double *seconds) {
   double all = 0;
   for (int n = 0; n < MSRI_SHARES; n++) all += s->share[n];
-  return all > 0 ? s->share[which] / all : 0;
-}
-
-void msri_shares_split(msri_shares *s, const msr_plan *plan, double spent, const msri_tally *all,
-                       double *seconds) {
-  const double past = all->drifting > 0 ? fmin(1, all->drifting / all->working) : 0;
-  const double kernels = spent * (1 - past);
+  const double drifts = all > 0 ? s->drifts * (1 - s->copying / all) : 0;
+  const double past = drifts / (1 + drifts), kernels = spent * (1 - past);
   double *rest = &seconds[plan->row.integrator];
   for (size_t i = 0; i < plan->n_terms; i++) {
     const msr_force *force = plan->term[i].force;
     const int which = force->uniform ? MSRI_SHARE_WEIGHT
                       : force->relax ? MSRI_SHARE_AIR
                                      : MSRI_SHARE_SPRINGS;
-    const double own = kernels * of_all(s, which);
+    const double own = all > 0 ? kernels * s->share[which] / all : 0;
     seconds[i] += own;
     *rest -= own;
   }

@@ -12,6 +12,8 @@ typedef struct msri_shares {
   double *memory;             /* [msri_shares_size] */
   double share[MSRI_SHARES];  /* summed over what was measured */
   double measuring, sweeping; /* time so far [s] */
+  double copying;             /* rows in and out: its part of the integrator's share */
+  double drifts;              /* past what is in the way, over kicks before them */
   uint32_t turn;
 } msri_shares;
 
@@ -25,9 +27,7 @@ double msri_shares_clock(void);
  * went there already. */
 void msri_shares_measure(msri_shares *shares, const msri_pass *pass);
 
-/* Time of a sweep [s] in which threads told `all`, from the integrator's seconds to those of all
- * effects. */
-void msri_shares_split(msri_shares *shares, const msr_plan *plan, double spent,
-                       const msri_tally *all, double *seconds);
+/* Time of a sweep [s] from the integrator's seconds to those of all effects. */
+void msri_shares_split(msri_shares *shares, const msr_plan *plan, double spent, double *seconds);
 
 #endif

@@ -234,7 +234,6 @@ static void work(void *self, unsigned thread) {
   const msri_objects *objects = &s->pass.plan->objects;
   worker *me = &s->worker[thread];
   unsigned turn = s->turn;
-  const double start = me->tally.timed ? msri_clock_now() : 0;
   me->fastest = 0;
   me->tally.met = 0;
   for (size_t n = 0; n < objects->n; n++) {
@@ -248,7 +247,6 @@ static void work(void *self, unsigned thread) {
     me->fastest = msri_worse(fastest, me->fastest);
   }
   me->turn = turn;
-  if (me->tally.timed) me->tally.working += msri_clock_now() - start;
 }
 
 /* Takes the stages that are set. Returns the largest speed along an axis. */
@@ -308,12 +306,11 @@ msri_progress msri_sweep_run(msri_sweep *s, const msri_swept *state, msri_course
 }
 
 void msri_sweep_split(msri_sweep *s, double spent, double *seconds) {
-  msri_tally all = {0};
+  double kicks = 0, drifts = 0;
   for (unsigned t = 0; t < s->threads; t++) {
-    msri_tally *tally = &s->worker[t].tally;
-    all.working += tally->working;
-    all.drifting += tally->drifting;
-    tally->working = tally->drifting = 0;
+    kicks += s->worker[t].tally.kicks.all;
+    drifts += s->worker[t].tally.drifts.all;
   }
-  msri_shares_split(&s->shares, s->pass.plan, spent, &all, seconds);
+  s->shares.drifts = drifts > 0 ? drifts / kicks : 0;
+  msri_shares_split(&s->shares, s->pass.plan, spent, seconds);
 }

@@ -65,11 +65,10 @@ out_air() {
 # supports and border: no contact is made, and none is asked for
 out_supports() {
   edit '/status = add_contact(/d' plan/effects.c
-  edit 's/\(state->\)\?plan->contact\./none_in_the_way./g' plan/contacts.c plan/plan.[ch] \
-    plan/implicit.c plan/leaping.c
+  edit 's/\(state->\)\?plan->contact\./none_in_the_way./g' $(grep -l 'plan->contact\.' plan/*.[ch])
   edit 's/^struct msr_plan {/static const msri_contact none_in_the_way;\n&/' plan/plan.h
-  edit 's/\(w->\|s->\|\b\)pass\(->\|\.\)meets/false/g' sweep/patch.c sweep/rows.c sweep/shares.c \
-    sweep/sweep.c
+  edit 's/\(w->\|s->\|\b\)pass\(->\|\.\)meets/false/g' sweep/patch.c sweep/rows.c \
+    sweep/shares.c
   edit 's/msri_plan_meets(plan)/false/g' sweep/sweep.c
   rm contacts/supports.c contacts/kept.c contacts/located.c sweep/meet.c
 }
@@ -132,8 +131,8 @@ static inline size_t msri_shares_size(const msr_plan *plan, int ways) {
 }
 static inline double msri_shares_clock(void) { return 0; }
 C
-  edit '/msri_shares_measure(/d; /msri_shares_split(/d; s/me->tally.timed/false/' sweep/sweep.c
-  edit 's/meet->tally->timed && msri_tally_is_turn(meet->tally)/false/' sweep/meet.c
+  edit '/msri_shares_measure(/d; /s->shares.drifts =/d; /msri_shares_split(/d' sweep/sweep.c
+  edit 's/msri_tally_is_turn(tally)/false/' sweep/patch.c sweep/rows.c
   rm sweep/shares.c
   cat > plan/meter.h <<'C'
 #include <stddef.h>
