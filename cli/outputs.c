@@ -40,10 +40,12 @@ typedef struct row {
 
 /* ---- How long it takes */
 
-/* Time since `start` goes to the output, but for what of it went to drawing. */
+/* Time since `start` goes to the output, but for what of it went to drawing. The threads that come
+ * here take turns. */
 static void add_time(output *o, double start, double drawn) {
-  o->seconds[o->task] += status_line_now() - start - drawn;
-  o->seconds[DRAWING] += drawn;
+  double *const seconds = pthread_equal(pthread_self(), o->thread) ? o->seconds : o->beside;
+  seconds[o->task] += status_line_now() - start - drawn;
+  seconds[DRAWING] += drawn;
 }
 
 static double drawing(const output *o) {
@@ -59,10 +61,8 @@ static msr_status write_timed(void *self, const msr_state *state, uint64_t frame
   return status;
 }
 
-/* Beside the simulation its time isn't a part of the run's. */
 static msr_status complete_timed(void *self, uint64_t frame, msr_error *err) {
   output *const o = self;
-  if (o->beside) return o->sink.complete(o->sink.self, frame, err);
   const double start = status_line_now(), before = drawing(o);
   const msr_status status = o->sink.complete(o->sink.self, frame, err);
   add_time(o, start, drawing(o) - before);
@@ -91,8 +91,7 @@ static msr_status open_row(const row *r, const settings *s, const msr_plan *plan
                            msr_error *err) {
   output *const o = &out->output[out->n];
   const double start = status_line_now();
-  *o = (output){
-      .task = r->task, .seconds = out->seconds, .frames = out->frames, .beside = s->threads > 1};
+  *o = (output){r->task, pthread_self(), out->seconds, out->beside, out->frames, {0}};
   const msr_status status = r->open(s, plan, &o->sink, err);
   if (status != MSR_OK) return status;
   out->sink[out->n++] =

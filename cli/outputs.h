@@ -4,22 +4,26 @@
 
 #include "effects.h"
 
+#include <pthread.h>
+
 enum { MOST_OUTPUTS = 3 };
 
 /* A sink, with the time that it takes. */
 typedef struct output {
-  msr_sink sink;
-  bool beside;      /* it completes frames beside the simulation */
   task task;        /* that it does; WRITING draws, too */
-  double *seconds;  /* [TASKS] of the outputs */
-  uint64_t *frames; /* [TASKS] likewise: that it took */
+  pthread_t thread; /* of the run */
+  double *seconds;  /* [TASKS] of the outputs, */
+  double *beside;   /* [TASKS] and beside the run */
+  uint64_t *frames; /* [TASKS] that it took */
+  msr_sink sink;
 } output;
 
 typedef struct outputs {
   msr_sink sink[MOST_OUTPUTS + 1]; /* [n], and room for one of the caller's own */
   output output[MOST_OUTPUTS];     /* [n] */
   size_t n;
-  double seconds[TASKS];  /* opening and closing included */
+  double seconds[TASKS];  /* of the run's, opening and closing included; */
+  double beside[TASKS];   /* of a thread beside it, while it goes on */
   uint64_t frames[TASKS]; /* that went there */
 } outputs;
 

@@ -19,7 +19,14 @@ static void print_effect(table *t, const char *name, double seconds, uint64_t ca
   const int64_t time = (int64_t)llround(1e6 * seconds);
   t->rest -= time;
   print_row(t, name, time);
-  fprintf(t->out, " %12" PRIu64 " %s%s\n", calls, unit, calls == 1 ? "" : "s");
+  fprintf(t->out, " %12" PRIu64 " %s%s", calls, unit, calls == 1 ? "" : "s");
+}
+
+/* What is done beside the run is no part of its time. */
+static void print_task(table *t, const char *name, const outputs *written, task w) {
+  const uint64_t frames = written->frames[w == DRAWING ? WRITING : w];
+  print_effect(t, name, written->seconds[w], frames, "frame");
+  if (written->beside[w] > 0) fprintf(t->out, ", %.6f s beside", written->beside[w]);
 }
 
 void times_print(FILE *out, const effect_list *list, const msr_state *state, const outputs *written,
@@ -31,10 +38,9 @@ void times_print(FILE *out, const effect_list *list, const msr_state *state, con
     if (e->on && i < list->library) {
       print_effect(&t, e->name, msr_state_seconds(state, i), msr_state_calls(state, i), "call");
     } else if (e->on) {
-      const task w = (task)(i - list->library);
-      print_effect(&t, e->name, written->seconds[w], written->frames[w == DRAWING ? WRITING : w],
-                   "frame");
+      print_task(&t, e->name, written, (task)(i - list->library));
     }
+    if (e->on) fputs("\n", out);
   }
   print_row(&t, "other", t.rest);
   fputs("\n", out);

@@ -4,7 +4,8 @@
 
 #include "outputs.h"
 
-/* A line per effect that is on, one for all the rest, and their sum, which is `seconds`. */
+/* A line per effect that is on, one for all the rest, and their sum, which is `seconds`; what was
+ * done beside stands behind. */
 void times_print(FILE *out, const effect_list *list, const msr_state *state, const outputs *written,
                  double seconds);
 

@@ -739,16 +739,18 @@ MSR_API msr_arrays msr_state_edit(msr_state *state);
 MSR_API uint64_t msr_state_iteration(const msr_state *state);
 
 /* Advances to `iterations` of DT from here. Methods that split take an evaluation of the forces
- * more in each call where they step row by row (see msr_plan_options.threads): a call is better of
- * many iterations than of one. The guard looks at speeds every 16 steps, or 64 stages of them where
- * they are taken row by row, and at all energies every 256: MSR_EUNSTABLE names the mass, its
- * longest spring, the time and a step that is stable. With figures.care, x, y, vx, vy are kept
- * every 64 iterations (128 of two steps, 256 of one); once 2 % of what the scene had to give came
- * from nowhere, or was lost where nothing takes any, or the guard refuses the state, it goes back
- * to what was kept, and comes here by steps of that method, over four substeps at most, or less
- * where equations can't be solved. They keep the energy and cost tens of times more; what is
- * crushed at the start begins so. Bits don't depend on how steps are grouped. MSR_ENOMEM if there
- * is no memory for such steps: the state may be stepped again. Or what a force returns. */
+ * more in each call where they step row by row (see msr_plan_options.threads), unless a step ends
+ * in a drift: a call is better of many iterations than of one. So they do after each look at all
+ * energies, and past supports after 31 steps, or fewer of wide objects. The guard looks at speeds
+ * every 16 steps, row by row every 64 of their stages, and at all energies every 256: MSR_EUNSTABLE
+ * names the mass, its longest spring, the time and a step that is stable. With figures.care, x, y,
+ * vx, vy are kept every 64 iterations (128 of two steps, 256 of one); once 2 % of what the scene
+ * had to give came from nowhere, or was lost where nothing takes any, or the guard refuses the
+ * state, it goes back to what was kept, and comes here by steps of that method, over four substeps
+ * at most, or less where equations can't be solved. They keep the energy and cost tens of times
+ * more; what is crushed at the start begins so. Bits don't depend on how steps are grouped.
+ * MSR_ENOMEM if there is no memory for such steps: the state may be stepped again. Or what a force
+ * returns. */
 MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err);
 
 /* The guard: what a driving force returns, or MSR_EUNSTABLE if a number or an energy isn't finite
@@ -783,7 +785,10 @@ MSR_API uint64_t msr_state_calls(const msr_state *state, size_t effect);
  * plan is `timed`, else 0. It is of that effect alone: the integrator's is without that of the
  * forces that it asks for, and all together are the time of the steps and checks, but for the
  * callbacks poll and write. What supports and border take is told as one, of the first that is on,
- * or as part of collisions where these are on. Begins at 0 with the state, and after a load. */
+ * or as part of collisions where these are on. Row by row, where forces, kicks and drifts are one
+ * loop, the time of the loop is split by what each is measured to take on some rows, now and then:
+ * a weight may take none, since it is added while springs are divided. Begins at 0 with the state,
+ * and after a load. */
 MSR_API double msr_state_seconds(const msr_state *state, size_t effect);
 
 /* Collisions of masses with supports and with each other so far, those included that were taken
@@ -867,10 +872,10 @@ MSR_API msr_status msr_sink_close(msr_sink *sink, msr_error *err);
 typedef struct msr_run_options {
   const msr_sink *sinks; /* [n_sinks], each given every frame in turn; then they complete it */
   size_t n_sinks;
-  /* Called with the state before every substep, every run of up to 257 steps that is taken row by
-   * row (see msr_plan_options.threads) and every stretch of long steps, which is an iteration or a
-   * part of it (NULL: none); a status other than MSR_OK ends the run and comes back unchanged.
-   * Running the state again goes on from there. */
+  /* Called with the state before every substep; row by row, before as many as there are up to the
+   * next frame or look, or as take a moment; and before every stretch of long steps, which is an
+   * iteration or a part of it (NULL: none); a status other than MSR_OK ends the run and comes back
+   * unchanged. Running the state again goes on from there. */
   msr_status (*poll)(void *data, const msr_state *state);
   void *data;
   /* 2 or more: frames are completed by the sinks in a thread that lasts as long as the run, beside

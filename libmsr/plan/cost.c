@@ -1,7 +1,9 @@
 /* cost.c - what each effect takes in a step, counted from its loops: operations on doubles, and
  * bytes of arrays that are read and written. Forces tell their own; springs, contacts, steps and
  * what watches over them are the library's. */
+#include "integrators/splitting.h"
 #include "plan/plan.h"
+#include "sweep/sweep.h"
 
 #include <math.h>
 
@@ -9,13 +11,35 @@
  * read and written. */
 static const msr_load springs = {.spring = 15, .mass_bytes = 48};
 
-/* Both coordinates: q + h u 4, compared with the pixel 4, by those that stay in theirs. */
+/* Both coordinates: q + h u 4, compared with the pixel 4, by those that stay in theirs; but where
+ * they are known to be far from all that they could meet. */
 static const msr_load drift = {.mass = 8, .mass_bytes = 48};
+static const msr_load free_drift = {.mass = 4, .mass_bytes = 48};
 
 /* Beside each evaluation: a made 0, divided by m, v += h a, q += h v of both coordinates. */
 static const msr_load stage = {.mass = 10, .mass_bytes = 144};
 
-/* Speeds: sum of v^2. Energies: those, of springs and of what falls. */
+/* In a sweep all is one loop (forces/lattice_kernel.inc), once for each evaluation. Arrays are
+ * those that it goes over, in cache: of them x, y, vx, vy come from memory and go back there, 64
+ * bytes, once in a pass of up to 32 stages. Springs as above; x, y are read, forces to the cells
+ * below are left for these, and read there, 32, and so is the stiffness, to each of the neighbours
+ * below and to the right 8. */
+static msr_load swept_springs(const msr_plan *plan) {
+  const double ways = plan->neighbours / 2.0;
+  return (msr_load){.spring = 15, .mass_bytes = 16 + 32 * (ways - 1) + 8 * ways};
+}
+
+/* A weight is added to both coordinates, v = air + (v - air) keep twice, where v is at hand. */
+static const msr_load swept_weight = {.mass = 2};
+static const msr_load swept_air = {.mass = 12};
+
+/* f / m 2, two kicks 8, a drift 4: x, y, vx, vy are read and written. Where supports see to the
+ * drift a is written for them. */
+static const msr_load swept_stage = {.mass = 14, .mass_bytes = 64};
+static const msr_load swept_kicks = {.mass = 10, .mass_bytes = 48};
+
+/* Speeds: sum of v^2; compared as they come in a sweep. Energies: those, of springs and of what
+ * falls. */
 static const msr_load glance = {.mass = 4, .mass_bytes = 16};
 static const msr_load look = {.mass = 8, .spring = 9, .mass_bytes = 48};
 
@@ -37,11 +61,25 @@ static void add(const msr_plan *plan, double calls, const msr_load *load, msr_co
 /* Evaluations of the acceleration in a step; NAN: as many as it takes. */
 static double evaluations(const msr_plan *plan) {
   const msr_integrator *i = plan->figures.integrator;
+  if (msri_plan_sweeps(plan)) return msri_course_evaluations(plan);
   return i->evaluations > 0 && !i->implicit && !i->adaptive ? i->evaluations : (double)NAN;
 }
 
 static bool told(const msr_load *l) {
   return l->call + l->mass + l->spring + l->call_bytes + l->mass_bytes + l->spring_bytes > 0;
+}
+
+/* Air is there at each evaluation, even if it's called for no more than twice a step. */
+static msr_cost cost_of_swept_force(const msr_plan *plan, const msr_force *force) {
+  const msr_load springs_load = swept_springs(plan);
+  msr_cost cost = {0};
+  add(plan, evaluations(plan),
+      force->uniform ? &swept_weight
+      : force->relax ? &swept_air
+                     : &springs_load,
+      &cost);
+  cost.calls = msri_force_calls(force, plan->figures.integrator, evaluations(plan));
+  return cost;
 }
 
 static msr_cost cost_of_force(const msr_plan *plan, const msr_force *force) {
@@ -54,6 +92,14 @@ static msr_cost cost_of_force(const msr_plan *plan, const msr_force *force) {
   return cost;
 }
 
+/* A drift without forces before it is by itself. */
+static void add_swept_steps(const msr_plan *plan, msr_cost *cost) {
+  const double drifts = msri_splitting_drifts(plan->figures.integrator);
+  const bool meets = msri_plan_meets(plan);
+  add(plan, evaluations(plan), meets ? &swept_kicks : &swept_stage, cost);
+  if (!meets) add(plan, drifts - evaluations(plan), &free_drift, cost);
+}
+
 /* One drift, or one look back, a step; of what is met only the least is known. */
 static msr_cost cost_of_contact(const msr_plan *plan, const msr_effect *effect) {
   static const msr_load nothing = {0};
@@ -62,7 +108,7 @@ static msr_cost cost_of_contact(const msr_plan *plan, const msr_effect *effect) 
   msr_cost cost = {.at_least = true};
   add(plan, isnan(evaluations(plan)) ? (double)NAN : 1,
       collisions ? &unknown
-      : first    ? &drift
+      : first    ? msri_plan_arms(plan) ? &free_drift : &drift
                  : &nothing,
       &cost);
   return cost;
@@ -74,12 +120,15 @@ static msr_cost cost_of_step(const msr_plan *plan, size_t e) {
   msr_cost cost = {0};
   if (e == plan->row.leaps) add(plan, (double)NAN, &unknown, &cost);
   if (e == plan->row.integrator) {
-    add(plan, evaluations(plan), &stage, &cost);
+    if (msri_plan_sweeps(plan))
+      add_swept_steps(plan, &cost);
+    else
+      add(plan, evaluations(plan), &stage, &cost);
     cost.calls = f->integrator->adaptive ? (double)NAN : 1;
     cost.at_least = !f->integrator->splits;
   }
   if (e == plan->row.guard) {
-    add(plan, 1.0 / MSRI_GLANCE, &glance, &cost);
+    if (!msri_plan_sweeps(plan)) add(plan, 1.0 / MSRI_GLANCE, &glance, &cost);
     add(plan, 1.0 / MSRI_LOOK, &look, &cost);
     if (plan->driven) add(plan, 1, plan->followed ? &unknown : &(msr_load){0}, &cost);
   }
@@ -91,9 +140,12 @@ static msr_cost cost_of_step(const msr_plan *plan, size_t e) {
 }
 
 void msri_plan_count_costs(msr_plan *plan) {
+  const bool sweeps = msri_plan_sweeps(plan);
   for (size_t e = 0; e < plan->n_effects && plan->effect[e].on; e++) {
     msr_effect *effect = &plan->effect[e];
-    if (effect->role == MSR_ROLE_FORCE) effect->cost = cost_of_force(plan, effect->force);
+    if (effect->role == MSR_ROLE_FORCE)
+      effect->cost =
+          sweeps ? cost_of_swept_force(plan, effect->force) : cost_of_force(plan, effect->force);
     if (effect->role == MSR_ROLE_CONTACT) effect->cost = cost_of_contact(plan, effect);
     if (effect->role == MSR_ROLE_STEP) effect->cost = cost_of_step(plan, e);
   }

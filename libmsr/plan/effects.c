@@ -5,6 +5,7 @@
 
 #include "base/number.h"
 #include "base/pixel.h"
+#include "sweep/sweep.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -150,12 +151,15 @@ static void add_leaps(msr_plan *plan, const msri_asked *asked) {
               f->leaps ? ", implicit, wherever cheaper" : "");
 }
 
+/* Row by row the loop itself tells how fast masses are. */
 static void add_guard(msr_plan *plan) {
   const bool on = plan->figures.masses > 0;
-  msri_format(add_effect(plan, MSR_ROLE_STEP, "guard", on, NULL), MSR_MESSAGE_SIZE,
-              on ? "always: stops what is unstable; speeds every %d steps, energies every %d"
+  char speeds[32] = "at each step", *reason = add_effect(plan, MSR_ROLE_STEP, "guard", on, NULL);
+  if (!msri_plan_sweeps(plan)) msri_format(speeds, sizeof speeds, "every %d steps", MSRI_GLANCE);
+  msri_format(reason, MSR_MESSAGE_SIZE,
+              on ? "always: stops what is unstable; speeds %s, energies every %d steps"
                  : "there is no mass",
-              MSRI_GLANCE, MSRI_LOOK);
+              speeds, MSRI_LOOK);
 }
 
 static void add_care(msr_plan *plan, const msri_asked *asked) {

@@ -6,13 +6,13 @@
 
 #include <math.h>
 
-msri_meet msri_meet_place(size_t cells, size_t masses, double *memory, uint64_t *met) {
+msri_meet msri_meet_place(size_t cells, size_t masses, double *memory, msri_tally *tally) {
   double *before = memory + 2 * cells, *debts = before + 2 * masses;
   return (msri_meet){.ax = memory,
                      .ay = memory + cells,
                      .before = before,
                      .debts = {.debt = (void *)debts, .capacity = masses},
-                     .met = met};
+                     .tally = tally};
 }
 
 /* ---- Kicks */
@@ -84,7 +84,7 @@ static void drift_past(const msri_pass *pass, double h, const msri_cells *cells,
                        msri_meet *meet) {
   const msri_contact *contact = &pass->plan->contact;
   const msri_flock f = flock_of(cells, meet, b->cell, b->n);
-  *meet->met +=
+  meet->tally->met +=
       contact->drift(contact->self, h, &f, msri_plan_settles(pass->plan) ? &meet->debts : NULL);
 }
 

@@ -85,23 +85,45 @@ static msri_cells cells_of(const msri_field *f, const msri_object *object, int w
 /* A stage past what is in the way. */
 static double step_past(const msri_pass *pass, const msri_stage *stage, const msri_object *object,
                         const msri_cells *cells, msri_meet *meet) {
+  msri_tally *tally = meet->tally;
+  const bool timed = msri_tally_is_turn(tally);
+  double start = timed ? msri_clock_now() : 0;
   const double fastest = msri_meet_kick(pass, stage, cells, meet);
-  if (stage->motion.drift == 0) return fastest;
-  for (size_t r = 0; r < object->rows; r++)
+  if (timed) start = msri_tally_add(tally, start, &tally->kicks);
+  for (size_t r = 0; r < object->rows && stage->motion.drift != 0; r++)
     msri_meet_drift(pass, stage, object->row + r, fastest, cells, r * length(object), meet);
+  if (timed) msri_tally_add(tally, start, &tally->drifts);
   return fastest;
 }
 
-double msri_patch_run(const msri_pass *pass, const msri_object *object, bool filled, bool kept,
-                      double *memory, uint64_t *met) {
-  const msri_objects *objects = &pass->plan->objects;
+static msri_field place(const msri_pass *pass, const msri_object *object, double *memory,
+                        msri_cells *cells) {
   const size_t all = stride(msri_patch_cells(object), length(object));
   const msri_field f = msri_field_place(pass->ways, all, memory);
-  msri_cells cells = cells_of(&f, object, pass->ways);
-  double *end = memory + msri_patch_size(pass->ways, false, object), fastest = 0;
-  msri_meet meet = {.met = met};
-  if (pass->meets) meet = msri_meet_place(cells.n, object->masses, end, met);
-  place_pulls(pass, object, memory + msri_field_size(pass->ways, all), &cells);
+  *cells = cells_of(&f, object, pass->ways);
+  place_pulls(pass, object, memory + msri_field_size(pass->ways, all), cells);
+  return f;
+}
+
+static double *end_of(const msri_pass *pass, const msri_object *object, double *memory) {
+  return memory + msri_patch_size(pass->ways, false, object);
+}
+
+msri_cells msri_patch_open(const msri_pass *pass, const msri_object *object, double *memory) {
+  msri_cells cells;
+  const msri_field f = place(pass, object, memory, &cells);
+  fill(pass, object, &f, end_of(pass, object, memory) - marks_size(object));
+  return cells;
+}
+
+double msri_patch_run(const msri_pass *pass, const msri_object *object, bool filled, bool kept,
+                      double *memory, msri_tally *tally) {
+  const msri_objects *objects = &pass->plan->objects;
+  msri_cells cells;
+  const msri_field f = place(pass, object, memory, &cells);
+  double *end = end_of(pass, object, memory), fastest = 0;
+  msri_meet meet = {.tally = tally};
+  if (pass->meets) meet = msri_meet_place(cells.n, object->masses, end, tally);
   if (!filled) fill(pass, object, &f, end - marks_size(object));
   for (int s = 0; s < pass->stages; s++) {
     const msri_stage *stage = &pass->stage[s];

@@ -319,10 +319,15 @@ static bool is_left_behind(const wave *w, int stage, size_t row) {
 static double step_past(wave *w, int stage, size_t row, const msri_cells *cells, island i) {
   const msri_pass *pass = w->pass;
   msri_meet *meet = &w->slot[place_of(w, row)].meet;
+  msri_tally *tally = meet->tally;
+  const bool timed = msri_tally_is_turn(tally);
+  double start = timed ? msri_clock_now() : 0;
   const double fastest = msri_meet_kick(pass, &pass->stage[stage], cells, meet);
+  if (timed) start = msri_tally_add(tally, start, &tally->kicks);
   if (pass->stage[stage].motion.drift != 0)
     msri_meet_drift(pass, &pass->stage[stage], w->object->row + row, fastest, cells, 0 - i.from,
                     meet);
+  if (timed) msri_tally_add(tally, start, &tally->drifts);
   return fastest;
 }
 
@@ -379,19 +384,19 @@ static void run(wave *w) {
   }
 }
 
-static void place_slots(wave *w, double *memory, uint64_t *met) {
+static void place_slots(wave *w, double *memory, msri_tally *tally) {
   for (int n = 0; n < w->pass->stages + 3; n++) {
     slot *s = &w->slot[n];
     s->row = none;
     if (!w->pass->meets) continue;
     s->meet = msri_meet_place(0, w->wide,
-                              memory + 2 * w->wide + (size_t)n * MSRI_MEET_DEBT * w->wide, met);
+                              memory + 2 * w->wide + (size_t)n * MSRI_MEET_DEBT * w->wide, tally);
     s->meet.ax = memory, s->meet.ay = memory + w->wide;
   }
 }
 
 double msri_rows_run(const msri_pass *pass, const msri_object *object, const msri_part *part,
-                     uint64_t *met) {
+                     msri_tally *tally) {
   const size_t width = object->width;
   double *memory = part->memory[part->number];
   wave w = {.pass = pass, .object = object, .part = part, .wide = wide(width)};
@@ -403,7 +408,7 @@ double msri_rows_run(const msri_pass *pass, const msri_object *object, const msr
   w.marks = w.ties + ties_size(width);
   w.marked[0] = w.marked[1] = none;
   w.ring = w.marks + marks_size(width);
-  place_slots(&w, memory + msri_rows_size(pass->ways, false, width, pass->stages), met);
+  place_slots(&w, memory + msri_rows_size(pass->ways, false, width, pass->stages), tally);
   memset(w.pulls, 0, pulls_size(pass->ways, width, pass->stages) * sizeof *w.pulls);
   if (w.in_place) set_ties(&w);
   run(&w);

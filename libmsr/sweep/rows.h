@@ -4,6 +4,7 @@
 #define MSRI_ROWS_H
 
 #include "sweep/field.h"
+#include "sweep/tally.h"
 
 enum { MSRI_MOST_STAGES = 32 };
 
@@ -28,6 +29,6 @@ int msri_rows_stages(int ways, size_t width);
 /* Takes a part through all stages of a pass; an object that may meet something is one part. Returns
  * the largest speed along an axis, and counts collisions. */
 double msri_rows_run(const msri_pass *pass, const msri_object *object, const msri_part *part,
-                     uint64_t *met);
+                     msri_tally *tally);
 
 #endif

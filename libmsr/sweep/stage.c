@@ -79,6 +79,24 @@ static void set_kicks(const joints *at, bool damped, double h, double *kick) {
   kick[1] = at->at[at->n - 1].kick_after * h;
 }
 
+/* Air is between kicks, and debts are paid by accelerations, even if these kick nothing. */
+static bool evaluates(const msr_plan *plan, const double *kick) {
+  return kick[0] != 0 || kick[1] != 0 || msri_plan_damps(plan) || msri_plan_settles(plan);
+}
+
+int msri_course_evaluations(const msr_plan *plan) {
+  const msri_course two = {.plan = plan, .steps = 2};
+  const int drifts = drifts_of(&two);
+  int n = 0;
+  for (int j = 0; j < drifts; j++) {
+    const joints at = joints_of(&two, (uint64_t)(drifts + j));
+    double kick[2] = {0};
+    set_kicks(&at, msri_plan_damps(plan), 1, kick);
+    n += evaluates(plan, kick);
+  }
+  return n;
+}
+
 msri_stage msri_course_stage(const msri_course *c, uint64_t k, const msri_swept *state) {
   const joints at = joints_of(c, k);
   const bool damped = msri_plan_damps(c->plan);
@@ -89,8 +107,7 @@ msri_stage msri_course_stage(const msri_course *c, uint64_t k, const msri_swept 
   for (int side = 0; side < 2; side++) m->L[side] = c->plan->mesh.lattice_L[side];
   m->w = 1 / c->plan->uniform_mass;
   if (at.n > 0) set_kicks(&at, damped, h, m->kick);
-  const bool kicks = m->kick[0] != 0 || m->kick[1] != 0;
-  stage.forces = kicks || damped || msri_plan_settles(c->plan);
+  stage.forces = evaluates(c->plan, m->kick);
   if (stage.forces) weigh(c, state, m->weight);
   m->keep[0] = m->keep[1] = 1;
   if (damped && at.n > 0) {

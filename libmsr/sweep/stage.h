@@ -28,6 +28,9 @@ typedef struct msri_course {
 /* Stages that it takes: between two steps the end of one and the beginning of the next are one. */
 uint64_t msri_course_stages(const msri_course *course);
 
+/* Those that evaluate forces, of a step among others. */
+int msri_course_evaluations(const msr_plan *plan);
+
 /* Stage k of them, counted in the calls of the state. */
 msri_stage msri_course_stage(const msri_course *course, uint64_t k, const msri_swept *state);
 

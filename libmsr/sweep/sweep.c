@@ -5,6 +5,7 @@
 #include "integrators/splitting.h"
 #include "sweep/patch.h"
 #include "sweep/rows.h"
+#include "sweep/shares.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -22,9 +23,9 @@ enum {
 typedef struct worker {
   double *patch, *rows; /* for an object that it has to itself */
   double fastest;
-  uint64_t met;
+  msri_tally tally;
   unsigned turn; /* see msri_sweep */
-  char apart[2 * LINE - 4 * sizeof(double *) - sizeof(unsigned)];
+  char apart[2 * LINE - 3 * sizeof(double *) - sizeof(msri_tally) - sizeof(unsigned)];
 } worker;
 
 struct msri_sweep {
@@ -39,6 +40,7 @@ struct msri_sweep {
   unsigned turn;            /* of objects that were shared so far */
   bool alone;               /* no thread has more than one object: */
   bool filled, kept;        /* small ones stay in their patches from one pass to the next */
+  msri_shares shares;       /* if the plan is timed */
   msri_stage stage[MSRI_MOST_STAGES];
 };
 
@@ -98,6 +100,7 @@ static int ways_of(const msr_plan *plan) {
 typedef struct room {
   int depth;
   size_t patch, rows, parts;
+  size_t shares; /* of all threads */
 } room;
 
 static void widen(size_t *size, size_t least) {
@@ -120,6 +123,7 @@ static room room_for(const msr_plan *plan) {
       widen(parts_of(plan, object, r.depth) > 1 ? &r.parts : &r.rows,
             msri_rows_size(ways, msri_plan_meets(plan), object->width, r.depth));
   }
+  r.shares = plan->timed ? msri_shares_size(plan, ways) : 0;
   r.patch = msri_round_up(r.patch, LINE / sizeof(double));
   r.rows = msri_round_up(r.rows, LINE / sizeof(double));
   r.parts = msri_round_up(r.parts, LINE / sizeof(double));
@@ -131,7 +135,7 @@ static size_t doubles_of(const room *r) { return r->patch + r->rows + r->parts; 
 static size_t bytes_of(const msr_plan *plan, const room *r) {
   const size_t thread = sizeof(worker) + doubles_of(r) * sizeof(double) + sizeof(double *) +
                         2 * sizeof(_Atomic unsigned);
-  return sizeof(msri_sweep) + plan->threads * thread + 2 * LINE;
+  return sizeof(msri_sweep) + plan->threads * thread + r->shares * sizeof(double) + 2 * LINE;
 }
 
 size_t msri_sweep_bytes(const msr_plan *plan) {
@@ -139,19 +143,23 @@ size_t msri_sweep_bytes(const msr_plan *plan) {
   return bytes_of(plan, &r);
 }
 
-static void place(msri_sweep *s, const room *r) {
+static void place(msri_sweep *s, const room *r, bool timed) {
+  const double clock = timed ? msri_shares_clock() : 0;
   const size_t threads = s->threads;
   char *at = (char *)(s + 1);
   at += (LINE - (uintptr_t)at % LINE) % LINE;
   s->worker = (void *)at;
   double *doubles = (void *)(s->worker + threads);
-  s->parts = (void *)(doubles + threads * doubles_of(r));
+  double *shares = doubles + threads * doubles_of(r);
+  s->shares.memory = r->shares > 0 ? shares : NULL;
+  s->parts = (void *)(shares + r->shares);
   s->opened = (void *)(s->parts + threads);
   s->closed = s->opened + threads;
   for (size_t t = 0; t < threads; t++, doubles += doubles_of(r)) {
     s->worker[t].patch = doubles;
     s->worker[t].rows = doubles + r->patch;
     s->parts[t] = s->worker[t].rows + r->rows;
+    s->worker[t].tally = (msri_tally){.timed = timed, .clock = clock};
   }
 }
 
@@ -176,7 +184,7 @@ msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error
                            .ways = ways_of(plan),
                            .besides = besides_of(plan),
                            .meets = msri_plan_meets(plan)};
-  place(made, &r);
+  place(made, &r, plan->timed);
   const msr_status status =
       plan->threads > 1 ? msri_team_create(plan->threads, &made->team, err) : MSR_OK;
   if (status == MSR_OK)
@@ -196,10 +204,10 @@ void msri_sweep_free(msri_sweep *sweep) {
 
 /* A part for a thread, once the one above needs nothing of what is left of the last. */
 static double run_part(msri_sweep *s, const msri_object *object, const msri_part *part,
-                       uint64_t *met) {
+                       msri_tally *tally) {
   const size_t p = part->number;
   if (p > 0) msri_team_wait(&s->closed[p - 1], part->turn - 1);
-  const double fastest = msri_rows_run(&s->pass, object, part, met);
+  const double fastest = msri_rows_run(&s->pass, object, part, tally);
   atomic_store_explicit(&s->closed[p], part->turn, memory_order_release);
   return fastest;
 }
@@ -207,17 +215,17 @@ static double run_part(msri_sweep *s, const msri_object *object, const msri_part
 static double run_large(msri_sweep *s, const msri_object *object, unsigned thread, unsigned owner,
                         unsigned *turn) {
   const unsigned parts = parts_of(s->pass.plan, object, s->depth);
-  uint64_t *met = &s->worker[thread].met;
+  msri_tally *tally = &s->worker[thread].tally;
   size_t begin[MSRI_MOST_THREADS + 1];
   msri_part part = {.parts = parts, .begin = begin, .opened = s->opened, .memory = s->parts};
   for (size_t p = 0; p <= parts; p++) begin[p] = object->rows * p / parts;
   if (parts == 1) {
     part.memory = &s->worker[thread].rows;
-    return thread == owner ? msri_rows_run(&s->pass, object, &part, met) : 0;
+    return thread == owner ? msri_rows_run(&s->pass, object, &part, tally) : 0;
   }
   part.turn = ++*turn;
   part.number = thread;
-  if (thread < parts) return run_part(s, object, &part, met);
+  if (thread < parts) return run_part(s, object, &part, tally);
   atomic_store_explicit(&s->closed[thread], part.turn, memory_order_release);
   return 0;
 }
@@ -228,7 +236,7 @@ static void work(void *self, unsigned thread) {
   worker *me = &s->worker[thread];
   unsigned turn = s->turn;
   me->fastest = 0;
-  me->met = 0;
+  me->tally.met = 0;
   for (size_t n = 0; n < objects->n; n++) {
     const msri_object *object = &objects->object[n];
     const unsigned owner = (unsigned)(n % s->threads);
@@ -236,7 +244,7 @@ static void work(void *self, unsigned thread) {
     if (!is_small(s->pass.plan, object))
       fastest = run_large(s, object, thread, owner, &turn);
     else if (owner == thread)
-      fastest = msri_patch_run(&s->pass, object, s->filled, s->kept, me->patch, &me->met);
+      fastest = msri_patch_run(&s->pass, object, s->filled, s->kept, me->patch, &me->tally);
     me->fastest = msri_worse(fastest, me->fastest);
   }
   me->turn = turn;
@@ -251,7 +259,7 @@ static double run_pass(msri_sweep *s, uint64_t *met) {
     work(s, 0);
   for (unsigned t = 0; t < s->threads; t++) {
     fastest = msri_worse(s->worker[t].fastest, fastest);
-    *met += s->worker[t].met;
+    *met += s->worker[t].tally.met;
   }
   s->turn = s->worker[0].turn;
   return fastest;
@@ -285,6 +293,7 @@ static void run_course(msri_sweep *s, msri_course *course, double fastest, msri_
     set_stages(s, course, k, end, p);
     k += (uint64_t)s->pass.stages;
     s->kept = s->alone && k < end;
+    if (s->shares.memory) msri_shares_measure(&s->shares, &s->pass);
     speed = msri_worse(run_pass(s, &p->met), speed);
     s->filled = s->kept;
     if ((k % LOOK > 0 && k < end) || speed <= fastest || p->fast) continue;
@@ -312,4 +321,14 @@ msri_progress msri_sweep_run(msri_sweep *s, const msri_swept *state, msri_course
     course.substep = (course.substep + steps) % substeps;
   }
   return progress;
+}
+
+void msri_sweep_split(msri_sweep *s, double spent, double *seconds) {
+  double kicks = 0, drifts = 0;
+  for (unsigned t = 0; t < s->threads; t++) {
+    kicks += s->worker[t].tally.kicks.all;
+    drifts += s->worker[t].tally.drifts.all;
+  }
+  s->shares.drifts = drifts > 0 ? drifts / kicks : 0;
+  msri_shares_split(&s->shares, s->pass.plan, spent, seconds);
 }

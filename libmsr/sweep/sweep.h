@@ -27,4 +27,8 @@ typedef struct msri_progress {
 msri_progress msri_sweep_run(msri_sweep *sweep, const msri_swept *state, msri_course course,
                              double fastest);
 
+/* Of a plan that is timed: moves what such a run spent [s] from the integrator's seconds [effects]
+ * to those of all effects, by what each is measured to take. */
+void msri_sweep_split(msri_sweep *sweep, double spent, double *seconds);
+
 #endif

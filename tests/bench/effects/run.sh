@@ -3,7 +3,8 @@
 # against those of a build in which its code isn't there, which must give the same trajectory.
 #   BUILD=build sh tests/bench/effects/run.sh [EFFECT ...]
 #
-# For each effect a function out_EFFECT takes it out of a copy of the tree, which is then built. Runs
+# For each effect a function out_EFFECT takes it out of a copy of the tree, which is then built; what
+# takes out nothing fails. Runs
 # are of run.c, or of msr for what the command does. Exit status 1 if any differs by more than 0.5 %
 # or in a bit.
 set -eu
@@ -17,29 +18,66 @@ most=0.5 # [%]
 
 # ---- How each is taken out: in the copy, in libmsr/
 
+edit() { # SCRIPT FILE ...: by sed; each file must change
+  script=$1
+  shift
+  for file; do
+    cp "$file" "$scratch/before"
+    sed -i "$script" "$file"
+    if cmp -s "$file" "$scratch/before"; then
+      echo "nothing in $file is changed by $script" >&2
+      exit 1
+    fi
+  done
+}
+
 force() { # NAME: without its file and its row in the table
   rm "forces/$1.c"
-  sed -i "/msr_force_$1,/d" scene/tables.c
-  sed -i "s/&msr_force_$1\\b/NULL/" scene/*.c plan/*.c
+  edit "/msr_force_$1,/d" scene/tables.c
+  if grep -l "&msr_force_$1\\b" scene/*.c plan/*.c > "$scratch/users"; then
+    edit "s/&msr_force_$1\\b/NULL/" $(cat "$scratch/users")
+  fi
 }
-out_gravity() { force gravity; }
 out_damping() { force damping; }
 out_drag() { force drag; }
 out_wind() { force wind; }
 out_push() { force push; }
 
+# with what kernels do for it
+out_gravity() {
+  force gravity
+  edit '/if (task->besides & MSRI_WITH_WEIGHT)$/,+1d' forces/lattice_kernel.inc
+  edit '/if (term->force->uniform) /d' sweep/stage.c
+  edit 's/uniform ? MSRI_WITH_WEIGHT : 0/uniform ? 0 : 0/' sweep/sweep.c
+}
+
+# drag and wind, with what kernels do for them
+out_air() {
+  force drag
+  force wind
+  edit '/for (int n = 0; n < 2 && (task->besides & MSRI_WITH_AIR); n++) {/,/^  }/d' \
+    forces/lattice_kernel.inc
+  edit '/for (int n = 0; n < 2 && (pass->besides & MSRI_WITH_AIR); n++)/,+1d' sweep/meet.c
+  edit '/if (damped && at.n > 0) {/,/^  }/d; /^static void damp(/,/^}/d' sweep/stage.c
+  edit 's/relax ? MSRI_WITH_AIR : 0/relax ? 0 : 0/' sweep/sweep.c
+}
+
 # supports and border: no contact is made, and none is asked for
 out_supports() {
-  sed -i '/status = add_contact(/d' plan/effects.c
-  sed -i 's/\(state->\)\?plan->contact\./none_in_the_way./g' plan/*.[ch]
-  sed -i 's/^struct msr_plan {/static const msri_contact none_in_the_way;\n&/' plan/plan.h
-  rm contacts/supports.c contacts/kept.c contacts/located.c
+  edit '/status = add_contact(/d' plan/effects.c
+  edit 's/\(state->\)\?plan->contact\./none_in_the_way./g' $(grep -l 'plan->contact\.' plan/*.[ch])
+  edit 's/^struct msr_plan {/static const msri_contact none_in_the_way;\n&/' plan/plan.h
+  edit 's/\(w->\|s->\|\b\)pass\(->\|\.\)meets/false/g' sweep/patch.c sweep/rows.c \
+    sweep/shares.c
+  edit 's/msri_plan_meets(plan)/false/g' sweep/sweep.c
+  rm contacts/supports.c contacts/kept.c contacts/located.c sweep/meet.c
 }
 
 out_collisions() {
-  sed -i '/^static msr_status add_collisions(/,/^}/d; /status = add_collisions(/d' plan/effects.c
-  sed -i '/msri_discs_free(/d; s/\(state->\)\?plan->discs\b/no_discs/g' plan/*.[ch]
-  sed -i 's/^struct msr_plan {/static msri_discs *const no_discs = NULL;\n&/' plan/plan.h
+  edit '/^static msr_status add_collisions(/,/^}/d; /status = add_collisions(/d' plan/effects.c
+  edit '/msri_discs_free(/d' plan/plan.c
+  edit 's/\(state->\)\?plan->discs\b/no_discs/g' $(grep -l 'plan->discs\b' plan/*.[ch])
+  edit 's/^struct msr_plan {/static msri_discs *const no_discs = NULL;\n&/' plan/plan.h
   rm contacts/discs.c contacts/drift.c
 }
 
@@ -66,12 +104,36 @@ static inline msr_status msri_care_watch(msr_state *state, bool wrong, bool *tur
   *turned = false;
   return MSR_OK;
 }
+static inline uint64_t msri_care_patience(const msr_state *state) {
+  (void)state;
+  return UINT64_MAX;
+}
 C
   rm run/leap.c run/care.c
 }
 
-# the clocks of -v
+# the team of --threads
+out_threads() {
+  edit '/if (s->team)$/,+2d; /msri_team_free(/d' sweep/sweep.c
+  edit 's/plan->threads > 1 ? msri_team_create(.*) : MSR_OK/MSR_OK/; /msri_team_wait(/d' sweep/sweep.c
+  edit '/msri_team_wait(/d' sweep/rows.c
+  rm base/team.c
+}
+
+# the clocks of -v, and what is measured for it
 out_times() {
+  cat > sweep/shares.h <<'C'
+#include "sweep/tally.h"
+typedef struct msri_shares { double *memory; } msri_shares;
+static inline size_t msri_shares_size(const msr_plan *plan, int ways) {
+  (void)plan, (void)ways;
+  return 0;
+}
+static inline double msri_shares_clock(void) { return 0; }
+C
+  edit '/msri_shares_measure(/d; /s->shares.drifts =/d; /msri_shares_split(/d' sweep/sweep.c
+  edit 's/msri_tally_is_turn(tally)/false/' sweep/patch.c sweep/rows.c
+  rm sweep/shares.c
   cat > plan/meter.h <<'C'
 #include <stddef.h>
 #include <stdint.h>
@@ -89,19 +151,20 @@ C
 
 # an output of the command: NAME, FILE of libmsr/run
 output() {
-  sed -i "s/return msr_$1_open(.*/return MSR_OK;/; s/msr_frames_drawing([^)]*)/0/" ../cli/outputs.c
+  edit "s/return msr_$1_open(.*/return MSR_OK;/" ../cli/outputs.c
   rm "run/$2.c"
 }
 out_frames() {
-  sed -i 's/return s->no_frames ? NULL : s->output;/return NULL;/' ../cli/outputs.c
+  edit 's/return s->no_frames ? NULL : s->output;/return NULL;/' ../cli/outputs.c
+  edit 's/msr_frames_drawing([^)]*)/0/' ../cli/outputs.c
   output frames frames
 }
 out_stats() {
-  sed -i 's/return s->stats;/return NULL;/' ../cli/outputs.c
+  edit 's/return s->stats;/return NULL;/' ../cli/outputs.c
   output stats stats
 }
 out_trajectory() {
-  sed -i 's/return s->trajectory;/return NULL;/' ../cli/outputs.c
+  edit 's/return s->trajectory;/return NULL;/' ../cli/outputs.c
   output trajectory trajectory
 }
 
@@ -121,10 +184,10 @@ take_out() { # EFFECT
   cp -a Makefile include libmsr cli "$copy"
   cp -a "$build/obj/libmsr" "$build/obj/cli" "$copy/build/obj"
   cp -a "$build/flags" "$copy/build"
-  (cd "$copy/libmsr" && "out_$1")
+  (cd "$copy/libmsr" && "out_$1") || return 1
   case $1 in frames | stats | trajectory) goal=msr ;; *) goal=libmsr.a ;; esac
   make -C "$copy" -j2 "build/$goal" > "$scratch/log" 2>&1 ||
-    { cat "$scratch/log"; echo "$1: NOT COMPILED"; exit 1; }
+    { cat "$scratch/log"; return 1; }
   [ $goal = msr ] || link_run "$copy" "$copy/build"
 }
 
@@ -178,7 +241,7 @@ known() { # EFFECT SCENE: the count of the whole build, made once for all effect
 # ---- The table
 
 row() { # EFFECT
-  take_out "$1"
+  take_out "$1" || { echo "$1: NOT TAKEN OUT"; return 1; }
   for scene in $scenes; do
     known "$1" $scene > "$scratch/off"
     count "$copy/build" "$1" $scene > "$scratch/absent"
@@ -186,7 +249,7 @@ row() { # EFFECT
   done | awk -v name="$1" -v most=$most '
     { off[NR] = $1; absent[NR] = $4; same[NR] = $2 == $5 && $3 == $6 }
     END {
-      line = sprintf("%-12s", name); verdict = "ok"
+      line = sprintf("%-12s", name); verdict = NR == 3 && absent[NR] > 0 ? "ok" : "NOT RUN"
       for (i = 1; i <= NR; i++) {
         d = 100 * (off[i] / absent[i] - 1)
         line = line sprintf(" %12d %+7.3f %%", off[i], d)
@@ -207,8 +270,8 @@ springs() { # SCENE
 }
 
 link_run . "$build"
-[ $# -gt 0 ] || set -- gravity damping drag wind push supports collisions leaps times frames stats \
-  trajectory
+[ $# -gt 0 ] || set -- gravity damping drag wind air push supports collisions leaps threads times \
+  frames stats trajectory
 echo "instructions with the effect off, and how many more than where its code isn't there"
 printf '%-12s' EFFECT
 for scene in $scenes; do printf ' %22s' "$scene"; done
