@@ -26,22 +26,40 @@ static bool tied(const msr_springs *springs, size_t i, size_t j) {
   return false;
 }
 
+/* Each mass is in the order once, pairs lie where the strips say, lower ones first, and no two
+ * masses of a block are tied. */
 static void check_graph(const msri_graph *g, const msr_springs *springs) {
-  size_t pairs = 0, spring = 0;
+  uint32_t first[64], second[64];
+  bool found[64] = {false};
+  size_t pair = 0, pairs = 0, spring = 0;
+  for (size_t i = 0; i < g->n; i++) {
+    assert_true(g->order[i] < g->n && !found[g->order[i]]);
+    found[g->order[i]] = true;
+  }
+  for (size_t b = 0, s = 0; b < g->blocks; b++) {
+    const size_t begin = b > 0 ? g->block[b - 1].mass : 0, end = g->block[b].mass;
+    assert_true(begin < end && end - begin <= MSRI_GRAPH_BLOCK);
+    for (; s < g->block[b].strip; s++)
+      for (size_t c = 0; c < g->strip[s].count; c++, pair++) {
+        first[pair] = (uint32_t)(g->strip[s].first + c);
+        second[pair] = (uint32_t)(g->strip[s].second + c);
+        assert_true(first[pair] >= begin && first[pair] < end);
+        assert_true(second[pair] >= end && second[pair] - first[pair] <= g->reach);
+        assert_true(tied(springs, g->order[first[pair]], g->order[second[pair]]));
+      }
+    assert_int_equal(g->block[b].pair, pair);
+  }
   for (size_t i = 0; i < g->n; i++)
-    for (size_t j = i + 1; j < g->n; j++) {
-      if (!tied(springs, i, j)) continue;
-      assert_true(g->begin[i] <= pairs && pairs < g->begin[i + 1]);
-      assert_int_equal(g->end[pairs], j);
-      pairs++;
-    }
+    for (size_t j = i + 1; j < g->n; j++) pairs += tied(springs, i, j);
   assert_int_equal(g->pairs, pairs);
-  assert_int_equal(g->begin[g->n], pairs);
+  assert_int_equal(pair, pairs);
+  assert_int_equal(g->n > 0 ? g->block[g->blocks - 1].mass : 0, g->n);
   for (size_t r = 0; r < springs->n_runs; r++)
     for (size_t s = 0; s < springs->run[r].count; s++, spring++) {
-      const size_t i = springs->run[r].first + s, pair = g->pair[spring];
-      assert_true(g->begin[i] <= pairs && pair < g->begin[i + 1]);
-      assert_int_equal(g->end[pair], i + springs->run[r].offset);
+      const size_t i = springs->run[r].first + s, p = g->pair[spring];
+      assert_true(p < pairs);
+      assert_int_equal(g->order[first[p]], i);
+      assert_int_equal(g->order[second[p]], i + springs->run[r].offset);
     }
 }
 
@@ -253,14 +271,15 @@ static void factors_of_a_turned_lattice_are_exact(void **state) {
     world w = turned_lattice(angle);
     msri_stiffness *a = &w.state->stiffness;
     const msr_view s = msr_state_view(w.state);
-    double r[2 * N], x[2 * N], z[2 * N];
-    msri_vector b[N], y[N];
+    double r[2 * N], x[2 * N], z[2 * N], y[2 * N], image[2 * N], rz;
     scatter(2 * N, &dice, 1, NULL, r);
     msri_stiffness_linearise(a, NULL, s.x, s.x, 1e8 * 0.1 / 1500, NULL);
     must(msri_stiffness_solve(a, r, 1e-9, x));
-    for (size_t i = 0; i < N; i++) b[i] = (msri_vector){0.1 * r[i], 0.1 * r[N + i]};
-    msri_stiffness_precondition(a, b, y);
-    for (size_t i = 0; i < N; i++) z[i] = y[i].x, z[N + i] = y[i].y;
+    const uint32_t *order = a->graph->order;
+    for (size_t i = 0; i < 2 * N; i++) y[i] = 0.1 * r[order[i % N] + (i < N ? 0 : N)];
+    msri_stiffness_forward(a, 0, a->graph->blocks, y);
+    msri_stiffness_backward(a, y, image, &rz);
+    for (size_t i = 0; i < 2 * N; i++) z[order[i % N] + (i < N ? 0 : N)] = y[i];
     if (!(distance(2 * N, x, z) < 100 * 1e8 * DBL_EPSILON * largest(2 * N, x)))
       fail_msg("angle %g: %g of %g", angle, distance(2 * N, x, z), largest(2 * N, x));
     close_world(w);
