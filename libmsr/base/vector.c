@@ -58,14 +58,37 @@ void msri_scale(size_t n, double c, double *y) {
   scale(n, c, y);
 }
 
-double msri_largest(size_t n, const double *x) {
-  double most = 0, sound = 0;
-  for (size_t i = 0; i < n; i++) {
-    const double size = fabs(x[i]);
-    most = size > most ? size : most;
-    sound += 0 * size;
+/* The largest |x[i]|, whatever the order, and 0 or no number, side by side. */
+MSRI_INLINE double largest(size_t n, const double *x) {
+  double most[8] = {0}, sound[8] = {0};
+  size_t i = 0;
+  for (; i + 8 <= n; i += 8)
+    for (size_t k = 0; k < 8; k++) {
+      const double size = fabs(x[i + k]);
+      most[k] = size > most[k] ? size : most[k];
+      sound[k] += 0 * size;
+    }
+  for (size_t k = 0; i + k < n; k++) {
+    const double size = fabs(x[i + k]);
+    most[k] = size > most[k] ? size : most[k];
+    sound[k] += 0 * size;
   }
-  return most + sound;
+  for (size_t k = 1; k < 8; k++) {
+    most[0] = most[k] > most[0] ? most[k] : most[0];
+    sound[0] += sound[k];
+  }
+  return most[0] + sound[0];
+}
+
+#if MSRI_WIDE
+MSRI_AVX2 static double largest_avx2(size_t n, const double *x) { return largest(n, x); }
+#endif
+
+double msri_largest(size_t n, const double *x) {
+#if MSRI_WIDE
+  if (msri_has_avx2()) return largest_avx2(n, x);
+#endif
+  return largest(n, x);
 }
 
 double msri_dot(size_t n, const double *x, const double *y) {

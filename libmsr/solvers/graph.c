@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* Of a window: so many rows of a picture, but not more masses than that. */
-enum { ROWS = 64, FEWEST = 1024, MOST = 131072 };
+enum { ROWS = 32, FEWEST = 1024, MOST = 131072 };
 
 /* What is made on the way; [n] each but for `slot`, [pairs]. */
 typedef struct desk {

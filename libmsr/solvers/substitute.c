@@ -1,0 +1,190 @@
+/* substitute.c - solving with the factors of factor.c: forward, z = L^-1 z, and backward, z = L^-T
+ * D^-1 z. On the way back the product of A and z is made as well, while both are at hand: what
+ * conjugate gradients take of memory is what they take of time. */
+#include "solvers/lanes.h"
+#include "solvers/strips.h"
+
+#include <string.h>
+
+/* Vectors of a block of masses, or what they are summed up to. */
+typedef struct vectors {
+  double x[MSRI_GRAPH_BLOCK], y[MSRI_GRAPH_BLOCK];
+} vectors;
+
+/* d = D^-1 z, and z d of each mass. */
+MSRI_INLINE void divide(const msri_stiffness *a, const part *b, const double *x, const double *y,
+                        vectors *restrict d, double *restrict product) {
+  const double *xx = a->pivot.xx + b->first, *xy = a->pivot.xy + b->first;
+  const double *yy = a->pivot.yy + b->first;
+  for (size_t s = 0; s < b->count; s++) {
+    d->x[s] = xx[s] * x[s] + xy[s] * y[s];
+    d->y[s] = xy[s] * x[s] + yy[s] * y[s];
+    product[s] = x[s] * d->x[s] + y[s] * d->y[s];
+  }
+}
+
+/* zj += l zi for the pairs of a strip. */
+MSRI_INLINE void push(const msri_stiffness *a, const msri_strip *t, size_t pair, double *z) {
+  const lowers l = lowers_of(a, pair, t->count);
+  const size_t n = a->graph->n;
+  const double *xi = z + t->first, *yi = xi + n;
+  double *restrict xj = z + t->second, *restrict yj = z + n + t->second;
+  for (size_t s = 0; s < t->count; s++) {
+    xj[s] += (double)l.xx[s] * xi[s] + (double)l.xy[s] * yi[s];
+    yj[s] += (double)l.yx[s] * xi[s] + (double)l.yy[s] * yi[s];
+  }
+}
+
+MSRI_INLINE void forward(const msri_stiffness *a, size_t from, size_t to, double *z) {
+  for (size_t i = from; i < to; i++) {
+    const part b = part_of(a->graph, i);
+    size_t pair = b.pair;
+    for (const msri_strip *t = b.strip; t < b.end; pair += t->count, t++) push(a, t, pair, z);
+  }
+}
+
+/* zi += l^T zj. */
+MSRI_INLINE void fetch(const msri_stiffness *a, const msri_strip *t, size_t pair, double *z) {
+  const lowers l = lowers_of(a, pair, t->count);
+  const size_t n = a->graph->n;
+  const double *xj = z + t->second, *yj = xj + n;
+  double *restrict xi = z + t->first, *restrict yi = z + n + t->first;
+  for (size_t s = 0; s < t->count; s++) {
+    xi[s] += (double)l.xx[s] * xj[s] + (double)l.yx[s] * yj[s];
+    yi[s] += (double)l.xy[s] * xj[s] + (double)l.yy[s] * yj[s];
+  }
+}
+
+/* z of a block from that of all later ones. */
+MSRI_INLINE void substitute(const msri_stiffness *a, const part *b, double *z, msri_lanes *rz) {
+  const size_t n = a->graph->n;
+  double *zx = z + b->first, *zy = zx + n, product[MSRI_GRAPH_BLOCK];
+  vectors d;
+  divide(a, b, zx, zy, &d, product);
+  msri_lanes_add(b->count, product, rz);
+  memcpy(zx, d.x, b->count * sizeof *zx);
+  memcpy(zy, d.y, b->count * sizeof *zy);
+  size_t pair = b->pair;
+  for (const msri_strip *t = b->strip; t < b->end; pair += t->count, t++) fetch(a, t, pair, z);
+  if (a->held) msri_stiffness_loosen(a, b->first, b->first + b->count, z);
+}
+
+/* What a block of masses sums up on the way up: y = A z, but for what comes before, and z y. */
+typedef struct image {
+  double x[MSRI_GRAPH_BLOCK], y[MSRI_GRAPH_BLOCK], product[MSRI_GRAPH_BLOCK];
+} image;
+
+MSRI_INLINE void weigh(const msri_stiffness *a, const part *b, const double *z,
+                       image *restrict sum) {
+  const size_t stride = a->m_stride;
+  const double *m = a->m + b->first * stride, *x = z + b->first, *y = x + a->graph->n;
+  for (size_t s = 0; s < b->count; s++) {
+    sum->x[s] = m[s * stride] * x[s];
+    sum->y[s] = m[s * stride] * y[s];
+    sum->product[s] = x[s] * sum->x[s] + y[s] * sum->y[s];
+  }
+}
+
+/* Springs act on differences of z, so that a translation feels none of them, however stiff. */
+MSRI_INLINE void pull(const msri_stiffness *a, const msri_strip *t, size_t pair, const double *z,
+                      size_t at, image *restrict sum, vectors *restrict f) {
+  const size_t n = a->graph->n;
+  const double *xx = a->tie.xx + pair, *xy = a->tie.xy + pair, *yy = a->tie.yy + pair;
+  const double *xi = z + t->first, *yi = xi + n, *xj = z + t->second, *yj = xj + n;
+  for (size_t s = 0; s < t->count; s++) {
+    const double dx = xi[s] - xj[s], dy = yi[s] - yj[s];
+    const double fx = xx[s] * dx + xy[s] * dy, fy = xy[s] * dx + yy[s] * dy;
+    f->x[s] = fx;
+    f->y[s] = fy;
+    sum->x[at + s] += fx;
+    sum->y[at + s] += fy;
+    sum->product[at + s] += dx * fx + dy * fy;
+  }
+}
+
+MSRI_INLINE void subtract(size_t n, const double *restrict x, double *restrict y) {
+  for (size_t i = 0; i < n; i++) y[i] -= x[i];
+}
+
+/* On the way up memory is read in pieces, which no processor foresees. */
+MSRI_INLINE void foresee(const msri_stiffness *a, size_t block, const double *z, const double *y) {
+  enum { AHEAD = 4 };
+  if (block < AHEAD) return;
+  const part b = part_of(a->graph, block - AHEAD);
+  const size_t n = a->graph->n, pairs = a->graph->block[block - AHEAD].pair - b.pair;
+  const double *masses[] = {a->pivot.xx, a->pivot.xy, a->pivot.yy, z, z + n, y, y + n};
+  const double *ties[] = {a->tie.xx, a->tie.xy, a->tie.yy};
+  for (size_t k = 0; k < 7; k++) msri_foresee(b.count * sizeof(double), masses[k] + b.first);
+  for (const msri_strip *t = b.strip; t < b.end; t++)
+    for (size_t k = 3; k < 7; k++) msri_foresee(sizeof(double), masses[k] + t->second);
+  for (size_t k = 0; k < 3; k++) msri_foresee(pairs * sizeof(double), ties[k] + b.pair);
+  msri_foresee(4 * pairs * sizeof(float), a->lower + 4 * b.pair);
+}
+
+MSRI_INLINE double backward(const msri_stiffness *a, double *z, double *y, double *rz) {
+  const size_t n = a->graph->n;
+  msri_lanes zy = {{0}}, other = {{0}};
+  for (size_t i = a->graph->blocks; i-- > 0;) {
+    const part b = part_of(a->graph, i);
+    image sum;
+    vectors f;
+    foresee(a, i, z, y);
+    substitute(a, &b, z, &other);
+    weigh(a, &b, z, &sum);
+    size_t pair = b.pair;
+    for (const msri_strip *t = b.strip; t < b.end; pair += t->count, t++) {
+      pull(a, t, pair, z, t->first - b.first, &sum, &f);
+      subtract(t->count, f.x, y + t->second);
+      subtract(t->count, f.y, y + n + t->second);
+    }
+    msri_lanes_add(b.count, sum.product, &zy);
+    memcpy(y + b.first, sum.x, b.count * sizeof *y);
+    memcpy(y + n + b.first, sum.y, b.count * sizeof *y);
+  }
+  *rz = msri_lanes_sum(&other);
+  return msri_lanes_sum(&zy);
+}
+
+/* Adds A z of the anchors to y; returns z y of it. */
+static double pull_anchors(const msri_stiffness *a, const double *z, double *y) {
+  const size_t n = a->graph->n;
+  double zy = 0;
+  for (size_t s = 0; s < a->springs->n_anchors; s++) {
+    const size_t i = a->place[s];
+    const double fx = a->anchor.xx[s] * z[i] + a->anchor.xy[s] * z[n + i];
+    const double fy = a->anchor.xy[s] * z[i] + a->anchor.yy[s] * z[n + i];
+    y[i] += fx;
+    y[n + i] += fy;
+    zy += z[i] * fx + z[n + i] * fy;
+  }
+  return zy;
+}
+
+/* ---- By vectors of several widths */
+
+#if MSRI_WIDE
+MSRI_AVX2 static void forward_avx2(const msri_stiffness *a, size_t from, size_t to, double *z) {
+  forward(a, from, to, z);
+}
+
+MSRI_AVX2 static double backward_avx2(const msri_stiffness *a, double *z, double *y, double *rz) {
+  return backward(a, z, y, rz);
+}
+#endif
+
+void msri_stiffness_forward(const msri_stiffness *a, size_t from, size_t to, double *z) {
+#if MSRI_WIDE
+  if (msri_has_avx2()) {
+    forward_avx2(a, from, to, z);
+    return;
+  }
+#endif
+  forward(a, from, to, z);
+}
+
+double msri_stiffness_backward(const msri_stiffness *a, double *z, double *y, double *rz) {
+#if MSRI_WIDE
+  if (msri_has_avx2()) return backward_avx2(a, z, y, rz) + pull_anchors(a, z, y);
+#endif
+  return backward(a, z, y, rz) + pull_anchors(a, z, y);
+}
