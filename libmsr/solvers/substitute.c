@@ -23,35 +23,25 @@ MSRI_INLINE void divide(const msri_stiffness *a, const part *b, const double *x,
   }
 }
 
-/* zj += l zi for the pairs of a strip. */
-MSRI_INLINE void push(const msri_stiffness *a, const msri_strip *t, size_t pair, double *z) {
-  const lowers l = lowers_of(a, pair, t->count);
-  const size_t n = a->graph->n;
-  const double *xi = z + t->first, *yi = xi + n;
-  double *restrict xj = z + t->second, *restrict yj = z + n + t->second;
-  for (size_t s = 0; s < t->count; s++) {
-    xj[s] += (double)l.xx[s] * xi[s] + (double)l.xy[s] * yi[s];
-    yj[s] += (double)l.yx[s] * xi[s] + (double)l.yy[s] * yi[s];
+/* y += l x for the pairs of a strip. */
+MSRI_INLINE void multiply(size_t count, const lowers *l, const double *x, const double *y,
+                          double *restrict lx, double *restrict ly) {
+  for (size_t s = 0; s < count; s++) {
+    lx[s] += (double)l->xx[s] * x[s] + (double)l->xy[s] * y[s];
+    ly[s] += (double)l->yx[s] * x[s] + (double)l->yy[s] * y[s];
   }
 }
 
 MSRI_INLINE void forward(const msri_stiffness *a, size_t from, size_t to, double *z) {
+  const size_t n = a->graph->n;
   for (size_t i = from; i < to; i++) {
     const part b = part_of(a->graph, i);
     size_t pair = b.pair;
-    for (const msri_strip *t = b.strip; t < b.end; pair += t->count, t++) push(a, t, pair, z);
-  }
-}
-
-/* zi += l^T zj. */
-MSRI_INLINE void fetch(const msri_stiffness *a, const msri_strip *t, size_t pair, double *z) {
-  const lowers l = lowers_of(a, pair, t->count);
-  const size_t n = a->graph->n;
-  const double *xj = z + t->second, *yj = xj + n;
-  double *restrict xi = z + t->first, *restrict yi = z + n + t->first;
-  for (size_t s = 0; s < t->count; s++) {
-    xi[s] += (double)l.xx[s] * xj[s] + (double)l.yx[s] * yj[s];
-    yi[s] += (double)l.xy[s] * xj[s] + (double)l.yy[s] * yj[s];
+    for (const msri_strip *t = b.strip; t < b.end; pair += t->count, t++) {
+      const lowers l = lowers_of(a, pair, t->count);
+      const double *x = z + t->first;
+      multiply(t->count, &l, x, x + n, z + t->second, z + n + t->second);
+    }
   }
 }
 
@@ -65,7 +55,11 @@ MSRI_INLINE void substitute(const msri_stiffness *a, const part *b, double *z, m
   memcpy(zx, d.x, b->count * sizeof *zx);
   memcpy(zy, d.y, b->count * sizeof *zy);
   size_t pair = b->pair;
-  for (const msri_strip *t = b->strip; t < b->end; pair += t->count, t++) fetch(a, t, pair, z);
+  for (const msri_strip *t = b->strip; t < b->end; pair += t->count, t++) {
+    const lowers l = lowers_of(a, pair, t->count), transposed = {l.xx, l.yx, l.xy, l.yy};
+    const double *x = z + t->second;
+    multiply(t->count, &transposed, x, x + n, z + t->first, z + n + t->first);
+  }
   if (a->held) msri_stiffness_loosen(a, b->first, b->first + b->count, z);
 }
 
@@ -87,23 +81,19 @@ MSRI_INLINE void weigh(const msri_stiffness *a, const part *b, const double *z,
 
 /* Springs act on differences of z, so that a translation feels none of them, however stiff. */
 MSRI_INLINE void pull(const msri_stiffness *a, const msri_strip *t, size_t pair, const double *z,
-                      size_t at, image *restrict sum, vectors *restrict f) {
-  const size_t n = a->graph->n;
+                      size_t at, image *restrict sum, double *restrict xj, double *restrict yj) {
   const double *xx = a->tie.xx + pair, *xy = a->tie.xy + pair, *yy = a->tie.yy + pair;
-  const double *xi = z + t->first, *yi = xi + n, *xj = z + t->second, *yj = xj + n;
+  const double *zi = z + t->first, *zj = z + t->second;
+  const size_t n = a->graph->n;
   for (size_t s = 0; s < t->count; s++) {
-    const double dx = xi[s] - xj[s], dy = yi[s] - yj[s];
+    const double dx = zi[s] - zj[s], dy = zi[n + s] - zj[n + s];
     const double fx = xx[s] * dx + xy[s] * dy, fy = xy[s] * dx + yy[s] * dy;
-    f->x[s] = fx;
-    f->y[s] = fy;
     sum->x[at + s] += fx;
     sum->y[at + s] += fy;
     sum->product[at + s] += dx * fx + dy * fy;
+    xj[s] -= fx;
+    yj[s] -= fy;
   }
-}
-
-MSRI_INLINE void subtract(size_t n, const double *restrict x, double *restrict y) {
-  for (size_t i = 0; i < n; i++) y[i] -= x[i];
 }
 
 /* On the way up memory is read in pieces, which no processor foresees. */
@@ -127,15 +117,12 @@ MSRI_INLINE double backward(const msri_stiffness *a, double *z, double *y, doubl
   for (size_t i = a->graph->blocks; i-- > 0;) {
     const part b = part_of(a->graph, i);
     image sum;
-    vectors f;
     foresee(a, i, z, y);
     substitute(a, &b, z, &other);
     weigh(a, &b, z, &sum);
     size_t pair = b.pair;
     for (const msri_strip *t = b.strip; t < b.end; pair += t->count, t++) {
-      pull(a, t, pair, z, t->first - b.first, &sum, &f);
-      subtract(t->count, f.x, y + t->second);
-      subtract(t->count, f.y, y + n + t->second);
+      pull(a, t, pair, z, t->first - b.first, &sum, y + t->second, y + n + t->second);
     }
     msri_lanes_add(b.count, sum.product, &zy);
     memcpy(y + b.first, sum.x, b.count * sizeof *y);
