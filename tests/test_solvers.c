@@ -3,6 +3,7 @@
 #include "plan/state.h"
 
 #include "scenes.h"
+#include "solvers/tangent.h"
 
 #include <gsl/gsl_linalg.h>
 
@@ -247,6 +248,63 @@ static void the_matrix_is_the_derivative(void **state) {
   }
 }
 
+/* ---- Many masses: several windows, blocks and strips of the graph */
+
+/* Solves for r at random, and puts x into the equations: their left side by the product of
+ * tangent.c, which knows nothing of the graph. Off by the tolerance, 1e-11 of x, times the largest
+ * eigenvalue over m, 1 + 12 c k / m. */
+static void check_residual(const world *w, double c, double k, uint64_t *dice) {
+  msri_stiffness *a = &w->state->stiffness;
+  const msr_view s = msr_state_view(w->state);
+  double *r = zeroed(2 * s.n, sizeof *r), *x = zeroed(2 * s.n, sizeof *x);
+  double *y = zeroed(2 * s.n, sizeof *y), largest_x = 0, off = 0;
+  scatter(2 * s.n, dice, 1, NULL, r);
+  msri_stiffness_linearise(a, NULL, s.x, s.x, c, NULL);
+  must(msri_stiffness_solve(a, r, 1e-11, x));
+  msri_tangent_product(&s, x, y);
+  for (size_t i = 0; i < 2 * s.n; i++) {
+    const double m = msr_view_mass(&s, i % s.n);
+    off += pow(x[i] + c * y[i] / m - r[i], 2);
+    largest_x += x[i] * x[i];
+  }
+  const double most = 1e-11 * (1 + 12 * c * k / 0.1);
+  if (!(sqrt(off) < most * sqrt(largest_x)))
+    fail_msg("%zu masses, c %g: off by %g of %g", s.n, c, sqrt(off), sqrt(largest_x));
+  free(r);
+  free(x);
+  free(y);
+}
+
+/* Pulled by a fifth, so that no spring pushes and nothing is cut off. */
+static void large_lattices_are_solved(void **state) {
+  (void)state;
+  uint64_t dice = 14;
+  for (int neighbours = 4; neighbours <= 8; neighbours += 4) {
+    world w = open_world(lattice(70, 90, neighbours, &(msr_conf){0.01, 0, 0.1, 1500, 1, 1}),
+                         &msr_integrator_backward_euler, 0);
+    const msr_arrays s = msr_state_edit(w.state);
+    for (size_t i = 0; i < 70 * 90; i++) {
+      s.x[i] = 1.2 * s.x[i] + uniform(&dice, -0.05, 0.05);
+      s.y[i] = 1.2 * s.y[i] + uniform(&dice, -0.05, 0.05);
+    }
+    assert_true(w.plan->graph->blocks > 100 && w.plan->graph->strips > w.plan->graph->blocks);
+    for (double c = 1e-5; c < 1; c *= 100) check_residual(&w, c, 1500, &dice);
+    close_world(w);
+  }
+}
+
+/* Numbered at random, masses that differ, and so far apart that every spring pulls. */
+static void large_meshes_are_solved(void **state) {
+  (void)state;
+  uint64_t dice = 15;
+  const mesh m = {.masses = 3000, .springs = 9000, .anchors = 50, .seed = 16};
+  world w = open_world(random_mesh(&m, NULL), &msr_integrator_backward_euler, 0);
+  const msr_arrays s = msr_state_edit(w.state);
+  for (size_t i = 0; i < 3000; i++) s.x[i] *= 1e4, s.y[i] *= 1e4;
+  for (double c = 1e-5; c < 1; c *= 100) check_residual(&w, c, 100, &dice);
+  close_world(w);
+}
+
 /* ---- The factors */
 
 static world turned_lattice(double angle) {
@@ -336,6 +394,8 @@ int main(void) {
       cmocka_unit_test(too_many_are_refused),
       cmocka_unit_test(solutions_are_those_of_dense_matrices),
       cmocka_unit_test(the_matrix_is_the_derivative),
+      cmocka_unit_test(large_lattices_are_solved),
+      cmocka_unit_test(large_meshes_are_solved),
       cmocka_unit_test(factors_of_a_turned_lattice_are_exact),
       cmocka_unit_test(stiff_beyond_rounding_is_told),
       cmocka_unit_test(nonsense_is_told),
