@@ -28,7 +28,7 @@ static bool tied(const msr_springs *springs, size_t i, size_t j) {
 }
 
 /* Each mass is in the order once, pairs lie where the strips say, lower ones first, and no two
- * masses of a block are tied. */
+ * masses of a block are tied unless pairs are single. */
 static void check_graph(const msri_graph *g, const msr_springs *springs) {
   uint32_t first[64], second[64];
   bool found[64] = {false};
@@ -45,7 +45,8 @@ static void check_graph(const msri_graph *g, const msr_springs *springs) {
         first[pair] = (uint32_t)(g->strip[s].first + c);
         second[pair] = (uint32_t)(g->strip[s].second + c);
         assert_true(first[pair] >= begin && first[pair] < end);
-        assert_true(second[pair] >= end && second[pair] - first[pair] <= g->reach);
+        assert_true(second[pair] >= (g->single ? first[pair] + 1 : end));
+        assert_true(second[pair] - first[pair] <= g->reach);
         assert_true(tied(springs, g->order[first[pair]], g->order[second[pair]]));
       }
     assert_int_equal(g->block[b].pair, pair);
@@ -288,6 +289,7 @@ static void large_lattices_are_solved(void **state) {
       s.y[i] = 1.2 * s.y[i] + uniform(&dice, -0.05, 0.05);
     }
     assert_true(w.plan->graph->blocks > 100 && w.plan->graph->strips > w.plan->graph->blocks);
+    assert_false(w.plan->graph->single);
     for (double c = 1e-5; c < 1; c *= 100) check_residual(&w, c, 1500, &dice);
     close_world(w);
   }
@@ -301,6 +303,7 @@ static void large_meshes_are_solved(void **state) {
   world w = open_world(random_mesh(&m, NULL), &msr_integrator_backward_euler, 0);
   const msr_arrays s = msr_state_edit(w.state);
   for (size_t i = 0; i < 3000; i++) s.x[i] *= 1e4, s.y[i] *= 1e4;
+  assert_true(w.plan->graph->single);
   for (double c = 1e-5; c < 1; c *= 100) check_residual(&w, c, 100, &dice);
   close_world(w);
 }

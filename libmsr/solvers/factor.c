@@ -7,6 +7,7 @@
  * row, s d^-1 (d - s), which is positive where s and d - s are. Springs that push take less than
  * half of a mass. So no pivot vanishes until c k / m nears 1e16, where a number has no room for the
  * mass beside the spring; then no solution is found. */
+#include "solvers/singles.h"
 #include "solvers/strips.h"
 
 #include <string.h>
@@ -27,14 +28,9 @@ static void start_pivots(msri_stiffness *a) {
   }
 }
 
-/* What is held is as heavy as numbers allow: it moves by nothing that counts. */
 static void weigh_down(const msri_stiffness *a, const part *b, pivots *d) {
-  const uint32_t *order = a->graph->order + b->first;
-  for (size_t s = 0; s < b->count; s++) {
-    const double heavy = 1e60 * (d->xx[s] + d->yy[s]);
-    if (a->held[order[s]]) d->xx[s] += heavy;
-    if (a->held[a->graph->n + order[s]]) d->yy[s] += heavy;
-  }
+  for (size_t s = 0; s < b->count; s++)
+    msri_stiffness_weigh_down(a, b->first + s, &d->xx[s], &d->yy[s]);
 }
 
 /* Pivots with all pairs that begin at the block. */
@@ -113,6 +109,10 @@ MSRI_AVX2 static void factorise_avx2(msri_stiffness *a) { factorise(a); }
 
 void msri_stiffness_factorise(msri_stiffness *a) {
   start_pivots(a);
+  if (a->graph->single) {
+    msri_singles_factorise(a);
+    return;
+  }
 #if MSRI_WIDE
   if (msri_has_avx2()) {
     factorise_avx2(a);

@@ -12,6 +12,10 @@
 /* Of a window: so many rows of a picture, but not more masses than that. */
 enum { ROWS = 32, FEWEST = 1024, MOST = 131072 };
 
+enum { WORTHWHILE = 8 }; /* pairs of a strip, on average: measured */
+
+static const uint32_t NONE = UINT32_MAX; /* no pair or strip */
+
 /* What is made on the way; [n] each but for `slot`, [pairs]. */
 typedef struct desk {
   msri_pairs pairs;
@@ -29,7 +33,8 @@ static size_t window_of(const msri_pairs *pairs) {
   return ROWS * reach < FEWEST ? FEWEST : ROWS * reach;
 }
 
-/* level[i]: the longest way to mass i through lower ones of its window. Returns the highest. */
+/* level[i]: the longest way to mass i through lower ones of its window; then as high as those above
+ * allow, so that holes don't make levels of their own. Returns the highest. */
 static uint32_t climb(const msri_pairs *pairs, size_t from, size_t to, uint32_t *level) {
   uint32_t highest = 0;
   memset(level + from, 0, (to - from) * sizeof *level);
@@ -39,6 +44,12 @@ static uint32_t climb(const msri_pairs *pairs, size_t from, size_t to, uint32_t 
       const size_t j = pairs->end[p];
       if (j < to && level[j] <= level[i]) level[j] = level[i] + 1;
     }
+  }
+  for (size_t i = to; i-- > from;) {
+    uint32_t next = UINT32_MAX;
+    for (size_t p = pairs->begin[i]; p < pairs->begin[i + 1] && pairs->end[p] < to; p++)
+      next = level[pairs->end[p]] < next ? level[pairs->end[p]] : next;
+    if (next < UINT32_MAX) level[i] = next - 1;
   }
   return highest;
 }
@@ -68,37 +79,37 @@ static size_t end_of_block(const msri_graph *g, const desk *d, size_t from, size
   return i;
 }
 
-/* Adds a pair to the strip that ends right before it, or to a new one. */
-static void add_pair(msri_graph *g, uint32_t first, uint32_t second, bool joins) {
-  msri_strip *last = g->strip + g->strips - 1;
-  g->pairs++;
-  if (second - first > g->reach) g->reach = second - first;
-  if (joins && last->first + last->count == first && last->second + last->count == second) {
-    last->count++;
-    return;
-  }
-  g->strip[g->strips++] = (msri_strip){first, second, 1};
+/* The pair of mass i with the one that is `second` in the order, if it belongs to no strip yet, or
+ * NONE. */
+static uint32_t pair_with(const msri_graph *g, const desk *d, size_t i, size_t second) {
+  const uint32_t mass = g->order[i];
+  for (uint32_t p = d->pairs.begin[mass]; p < d->pairs.begin[mass + 1]; p++)
+    if (d->slot[p] == NONE && d->place[d->pairs.end[p]] == second) return p;
+  return NONE;
 }
 
-/* The strips of a block: first the first pair of each mass, then the second, ... */
+/* A strip from pair p of mass i on, as long as there are pairs, up to the end of the block. */
+static void add_strip(msri_graph *g, const desk *d, uint32_t p, size_t i, size_t end) {
+  const uint32_t first = (uint32_t)i, second = d->place[d->pairs.end[p]];
+  if (second - first > g->reach) g->reach = second - first;
+  for (; p != NONE; p = ++i < end ? pair_with(g, d, i, second + (i - first)) : NONE)
+    d->slot[p] = (uint32_t)g->pairs++;
+  g->strip[g->strips++] = (msri_strip){first, second, (uint32_t)i - first};
+}
+
+/* The strips of a block. */
 static void add_strips(msri_graph *g, const desk *d, size_t from, size_t to) {
-  const size_t strips = g->strips;
-  bool more = true;
-  for (size_t n = 0; more; n++) {
-    more = false;
-    for (size_t i = from; i < to; i++) {
-      const size_t p = d->pairs.begin[g->order[i]] + n;
-      if (p >= d->pairs.begin[g->order[i] + 1]) continue;
-      more = true;
-      d->slot[p] = (uint32_t)g->pairs;
-      add_pair(g, (uint32_t)i, d->place[d->pairs.end[p]], g->strips > strips);
-    }
+  for (size_t i = from; i < to; i++) {
+    const uint32_t mass = g->order[i];
+    for (uint32_t p = d->pairs.begin[mass]; p < d->pairs.begin[mass + 1]; p++)
+      if (d->slot[p] == NONE) add_strip(g, d, p, i, to);
   }
   g->block[g->blocks++] = (msri_block_end){(uint32_t)to, (uint32_t)g->strips, (uint32_t)g->pairs};
 }
 
-static void fill(msri_graph *g, size_t springs, const desk *d) {
+static void make_strips(msri_graph *g, const desk *d) {
   const size_t window = window_of(&d->pairs);
+  for (size_t p = 0; p < d->pairs.count; p++) d->slot[p] = NONE;
   for (size_t from = 0; from < g->n; from += window) {
     const size_t to = g->n - from < window ? g->n : from + window;
     arrange(g, d, from, to);
@@ -110,6 +121,29 @@ static void fill(msri_graph *g, size_t springs, const desk *d) {
       add_strips(g, d, i, end);
     }
   }
+}
+
+/* Pairs one by one, as they are. */
+static void make_singles(msri_graph *g, const desk *d) {
+  g->single = true;
+  g->blocks = g->reach = 0;
+  g->strips = g->pairs;
+  for (uint32_t i = 0; i < g->n; i++) {
+    g->order[i] = i;
+    for (uint32_t p = d->pairs.begin[i]; p < d->pairs.begin[i + 1]; p++) {
+      d->slot[p] = p;
+      g->strip[p] = (msri_strip){i, d->pairs.end[p], 1};
+      if (d->pairs.end[p] - i > g->reach) g->reach = d->pairs.end[p] - i;
+    }
+    if ((i + 1) % MSRI_GRAPH_BLOCK > 0 && i + 1 < g->n) continue;
+    const uint32_t pairs = d->pairs.begin[i + 1];
+    g->block[g->blocks++] = (msri_block_end){i + 1, pairs, pairs};
+  }
+}
+
+static void fill(msri_graph *g, size_t springs, const desk *d) {
+  make_strips(g, d);
+  if (g->pairs < WORTHWHILE * g->strips) make_singles(g, d);
   for (size_t s = 0; s < springs; s++) g->pair[s] = d->slot[g->pair[s]];
 }
 

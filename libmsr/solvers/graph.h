@@ -23,13 +23,16 @@ enum { MSRI_GRAPH_BLOCK = 128 }; /* masses of a block, at most */
  * stay together, but in each of them masses are sorted by how many of its masses come before, one
  * tied to the other; where i < j are tied, i comes before j still. So blocks of masses don't
  * depend on each other, and of a picture their pairs are strips: what goes through masses one after
- * the other does so by vectors. Spring s, counted along the runs, belongs to pair pair[s]. */
+ * the other does so by vectors. Where strips would be too short for that the order is the masses'
+ * own, each strip is one pair, and masses of a block may be tied: `single`. Spring s, counted along
+ * the runs, belongs to pair pair[s]. */
 typedef struct msri_graph {
   size_t n, pairs, blocks, strips, bytes; /* n: masses; bytes: of this block of memory */
   size_t reach;                           /* the largest distance of a pair in that order */
   uint32_t *order, *pair;                 /* [n], [springs] */
   msri_block_end *block;                  /* [blocks] */
   msri_strip *strip;                      /* [strips] */
+  bool single;
 } msri_graph;
 
 /* MSR_EUSAGE if there are UINT32_MAX masses or springs or more, MSR_ENOMEM. */

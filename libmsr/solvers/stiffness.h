@@ -54,6 +54,15 @@ static inline void msri_stiffness_loosen(const msri_stiffness *a, size_t from, s
   }
 }
 
+/* What is held is as heavy as numbers allow: it moves by nothing that counts. */
+static inline void msri_stiffness_weigh_down(const msri_stiffness *a, size_t i, double *xx,
+                                             double *yy) {
+  const double heavy = 1e60 * (*xx + *yy);
+  const uint32_t mass = a->graph->order[i];
+  if (a->held[mass]) *xx += heavy;
+  if (a->held[a->graph->n + mass]) *yy += heavy;
+}
+
 /* Parts of these. */
 void msri_stiffness_factorise(msri_stiffness *a);
 /* Solves with the factors: z = L^-1 z in blocks from .. to - 1 of the graph, those before done. */

@@ -1,7 +1,7 @@
 /* substitute.c - solving with the factors of factor.c: forward, z = L^-1 z, and backward, z = L^-T
  * D^-1 z. On the way back the product of A and z is made as well, while both are at hand: what
  * conjugate gradients take of memory is what they take of time. */
-#include "solvers/lanes.h"
+#include "solvers/singles.h"
 #include "solvers/strips.h"
 
 #include <string.h>
@@ -10,6 +10,10 @@
 typedef struct vectors {
   double x[MSRI_GRAPH_BLOCK], y[MSRI_GRAPH_BLOCK];
 } vectors;
+
+MSRI_INLINE void copy(size_t n, const double *restrict from, double *restrict to) {
+  for (size_t i = 0; i < n; i++) to[i] = from[i];
+}
 
 /* d = D^-1 z, and z d of each mass. */
 MSRI_INLINE void divide(const msri_stiffness *a, const part *b, const double *x, const double *y,
@@ -32,16 +36,20 @@ MSRI_INLINE void multiply(size_t count, const lowers *l, const double *x, const 
   }
 }
 
-MSRI_INLINE void forward(const msri_stiffness *a, size_t from, size_t to, double *z) {
+MSRI_INLINE void forward_part(const msri_stiffness *a, const part *b, double *z) {
   const size_t n = a->graph->n;
+  size_t pair = b->pair;
+  for (const msri_strip *t = b->strip; t < b->end; pair += t->count, t++) {
+    const lowers l = lowers_of(a, pair, t->count);
+    const double *x = z + t->first;
+    multiply(t->count, &l, x, x + n, z + t->second, z + n + t->second);
+  }
+}
+
+MSRI_INLINE void forward(const msri_stiffness *a, size_t from, size_t to, double *z) {
   for (size_t i = from; i < to; i++) {
     const part b = part_of(a->graph, i);
-    size_t pair = b.pair;
-    for (const msri_strip *t = b.strip; t < b.end; pair += t->count, t++) {
-      const lowers l = lowers_of(a, pair, t->count);
-      const double *x = z + t->first;
-      multiply(t->count, &l, x, x + n, z + t->second, z + n + t->second);
-    }
+    forward_part(a, &b, z);
   }
 }
 
@@ -52,8 +60,8 @@ MSRI_INLINE void substitute(const msri_stiffness *a, const part *b, double *z, m
   vectors d;
   divide(a, b, zx, zy, &d, product);
   msri_lanes_add(b->count, product, rz);
-  memcpy(zx, d.x, b->count * sizeof *zx);
-  memcpy(zy, d.y, b->count * sizeof *zy);
+  copy(b->count, d.x, zx);
+  copy(b->count, d.y, zy);
   size_t pair = b->pair;
   for (const msri_strip *t = b->strip; t < b->end; pair += t->count, t++) {
     const lowers l = lowers_of(a, pair, t->count), transposed = {l.xx, l.yx, l.xy, l.yy};
@@ -63,7 +71,8 @@ MSRI_INLINE void substitute(const msri_stiffness *a, const part *b, double *z, m
   if (a->held) msri_stiffness_loosen(a, b->first, b->first + b->count, z);
 }
 
-/* What a block of masses sums up on the way up: y = A z, but for what comes before, and z y. */
+/* What a block of masses msri_sums up on the way up: y = A z, but for what comes before, and z y.
+ */
 typedef struct image {
   double x[MSRI_GRAPH_BLOCK], y[MSRI_GRAPH_BLOCK], product[MSRI_GRAPH_BLOCK];
 } image;
@@ -111,25 +120,29 @@ MSRI_INLINE void foresee(const msri_stiffness *a, size_t block, const double *z,
   msri_foresee(4 * pairs * sizeof(float), a->lower + 4 * b.pair);
 }
 
-MSRI_INLINE double backward(const msri_stiffness *a, double *z, double *y, double *rz) {
+MSRI_INLINE void backward_part(const msri_stiffness *a, const part *b, double *z, double *y,
+                               msri_sums *total) {
   const size_t n = a->graph->n;
-  msri_lanes zy = {{0}}, other = {{0}};
+  image sum;
+  substitute(a, b, z, &total->rz);
+  weigh(a, b, z, &sum);
+  size_t pair = b->pair;
+  for (const msri_strip *t = b->strip; t < b->end; pair += t->count, t++) {
+    pull(a, t, pair, z, t->first - b->first, &sum, y + t->second, y + n + t->second);
+  }
+  msri_lanes_add(b->count, sum.product, &total->zy);
+  copy(b->count, sum.x, y + b->first);
+  copy(b->count, sum.y, y + n + b->first);
+}
+
+MSRI_INLINE msri_sums backward(const msri_stiffness *a, double *z, double *y) {
+  msri_sums total = {{{0}}, {{0}}};
   for (size_t i = a->graph->blocks; i-- > 0;) {
     const part b = part_of(a->graph, i);
-    image sum;
     foresee(a, i, z, y);
-    substitute(a, &b, z, &other);
-    weigh(a, &b, z, &sum);
-    size_t pair = b.pair;
-    for (const msri_strip *t = b.strip; t < b.end; pair += t->count, t++) {
-      pull(a, t, pair, z, t->first - b.first, &sum, y + t->second, y + n + t->second);
-    }
-    msri_lanes_add(b.count, sum.product, &zy);
-    memcpy(y + b.first, sum.x, b.count * sizeof *y);
-    memcpy(y + n + b.first, sum.y, b.count * sizeof *y);
+    backward_part(a, &b, z, y, &total);
   }
-  *rz = msri_lanes_sum(&other);
-  return msri_lanes_sum(&zy);
+  return total;
 }
 
 /* Adds A z of the anchors to y; returns z y of it. */
@@ -154,12 +167,16 @@ MSRI_AVX2 static void forward_avx2(const msri_stiffness *a, size_t from, size_t 
   forward(a, from, to, z);
 }
 
-MSRI_AVX2 static double backward_avx2(const msri_stiffness *a, double *z, double *y, double *rz) {
-  return backward(a, z, y, rz);
+MSRI_AVX2 static msri_sums backward_avx2(const msri_stiffness *a, double *z, double *y) {
+  return backward(a, z, y);
 }
 #endif
 
 void msri_stiffness_forward(const msri_stiffness *a, size_t from, size_t to, double *z) {
+  if (a->graph->single) {
+    msri_singles_forward(a, from, to, z);
+    return;
+  }
 #if MSRI_WIDE
   if (msri_has_avx2()) {
     forward_avx2(a, from, to, z);
@@ -169,9 +186,16 @@ void msri_stiffness_forward(const msri_stiffness *a, size_t from, size_t to, dou
   forward(a, from, to, z);
 }
 
-double msri_stiffness_backward(const msri_stiffness *a, double *z, double *y, double *rz) {
+static msri_sums backward_here(const msri_stiffness *a, double *z, double *y) {
+  if (a->graph->single) return msri_singles_backward(a, z, y);
 #if MSRI_WIDE
-  if (msri_has_avx2()) return backward_avx2(a, z, y, rz) + pull_anchors(a, z, y);
+  if (msri_has_avx2()) return backward_avx2(a, z, y);
 #endif
-  return backward(a, z, y, rz) + pull_anchors(a, z, y);
+  return backward(a, z, y);
+}
+
+double msri_stiffness_backward(const msri_stiffness *a, double *z, double *y, double *rz) {
+  const msri_sums total = backward_here(a, z, y);
+  *rz = msri_lanes_sum(&total.rz);
+  return msri_lanes_sum(&total.zy) + pull_anchors(a, z, y);
 }
