@@ -3,6 +3,7 @@
 #include "plan/state.h"
 
 #include "scenes.h"
+#include "solvers/tangent.h"
 
 #include <gsl/gsl_linalg.h>
 
@@ -26,22 +27,41 @@ static bool tied(const msr_springs *springs, size_t i, size_t j) {
   return false;
 }
 
+/* Each mass is in the order once, pairs lie where the strips say, lower ones first, and no two
+ * masses of a block are tied unless pairs are single. */
 static void check_graph(const msri_graph *g, const msr_springs *springs) {
-  size_t pairs = 0, spring = 0;
+  uint32_t first[64], second[64];
+  bool found[64] = {false};
+  size_t pair = 0, pairs = 0, spring = 0;
+  for (size_t i = 0; i < g->n; i++) {
+    assert_true(g->order[i] < g->n && !found[g->order[i]]);
+    found[g->order[i]] = true;
+  }
+  for (size_t b = 0, s = 0; b < g->blocks; b++) {
+    const size_t begin = b > 0 ? g->block[b - 1].mass : 0, end = g->block[b].mass;
+    assert_true(begin < end && end - begin <= MSRI_GRAPH_BLOCK);
+    for (; s < g->block[b].strip; s++)
+      for (size_t c = 0; c < g->strip[s].count; c++, pair++) {
+        first[pair] = (uint32_t)(g->strip[s].first + c);
+        second[pair] = (uint32_t)(g->strip[s].second + c);
+        assert_true(first[pair] >= begin && first[pair] < end);
+        assert_true(second[pair] >= (g->single ? first[pair] + 1 : end));
+        assert_true(second[pair] - first[pair] <= g->reach);
+        assert_true(tied(springs, g->order[first[pair]], g->order[second[pair]]));
+      }
+    assert_int_equal(g->block[b].pair, pair);
+  }
   for (size_t i = 0; i < g->n; i++)
-    for (size_t j = i + 1; j < g->n; j++) {
-      if (!tied(springs, i, j)) continue;
-      assert_true(g->begin[i] <= pairs && pairs < g->begin[i + 1]);
-      assert_int_equal(g->end[pairs], j);
-      pairs++;
-    }
+    for (size_t j = i + 1; j < g->n; j++) pairs += tied(springs, i, j);
   assert_int_equal(g->pairs, pairs);
-  assert_int_equal(g->begin[g->n], pairs);
+  assert_int_equal(pair, pairs);
+  assert_int_equal(g->n > 0 ? g->block[g->blocks - 1].mass : 0, g->n);
   for (size_t r = 0; r < springs->n_runs; r++)
     for (size_t s = 0; s < springs->run[r].count; s++, spring++) {
-      const size_t i = springs->run[r].first + s, pair = g->pair[spring];
-      assert_true(g->begin[i] <= pairs && pair < g->begin[i + 1]);
-      assert_int_equal(g->end[pair], i + springs->run[r].offset);
+      const size_t i = springs->run[r].first + s, p = g->pair[spring];
+      assert_true(p < pairs);
+      assert_int_equal(g->order[first[p]], i);
+      assert_int_equal(g->order[second[p]], i + springs->run[r].offset);
     }
 }
 
@@ -229,6 +249,65 @@ static void the_matrix_is_the_derivative(void **state) {
   }
 }
 
+/* ---- Many masses: several windows, blocks and strips of the graph */
+
+/* Solves for r at random, and puts x into the equations: their left side by the product of
+ * tangent.c, which knows nothing of the graph. Off by the tolerance, 1e-11 of x, times the largest
+ * eigenvalue over m, 1 + 12 c k / m. */
+static void check_residual(const world *w, double c, double k, uint64_t *dice) {
+  msri_stiffness *a = &w->state->stiffness;
+  const msr_view s = msr_state_view(w->state);
+  double *r = zeroed(2 * s.n, sizeof *r), *x = zeroed(2 * s.n, sizeof *x);
+  double *y = zeroed(2 * s.n, sizeof *y), largest_x = 0, off = 0;
+  scatter(2 * s.n, dice, 1, NULL, r);
+  msri_stiffness_linearise(a, NULL, s.x, s.x, c, NULL);
+  must(msri_stiffness_solve(a, r, 1e-11, x));
+  msri_tangent_product(&s, x, y);
+  for (size_t i = 0; i < 2 * s.n; i++) {
+    const double m = msr_view_mass(&s, i % s.n);
+    off += pow(x[i] + c * y[i] / m - r[i], 2);
+    largest_x += x[i] * x[i];
+  }
+  const double most = 1e-11 * (1 + 12 * c * k / 0.1);
+  if (!(sqrt(off) < most * sqrt(largest_x)))
+    fail_msg("%zu masses, c %g: off by %g of %g", s.n, c, sqrt(off), sqrt(largest_x));
+  free(r);
+  free(x);
+  free(y);
+}
+
+/* Pulled by a fifth, so that no spring pushes and nothing is cut off. */
+static void large_lattices_are_solved(void **state) {
+  (void)state;
+  uint64_t dice = 14;
+  for (int neighbours = 4; neighbours <= 8; neighbours += 4) {
+    world w = open_world(lattice(70, 90, neighbours, &(msr_conf){0.01, 0, 0.1, 1500, 1, 1}),
+                         &msr_integrator_backward_euler, 0);
+    const msr_arrays s = msr_state_edit(w.state);
+    for (size_t i = 0; i < 70 * 90; i++) {
+      s.x[i] = 1.2 * s.x[i] + uniform(&dice, -0.05, 0.05);
+      s.y[i] = 1.2 * s.y[i] + uniform(&dice, -0.05, 0.05);
+    }
+    assert_true(w.plan->graph->blocks > 100 && w.plan->graph->strips > w.plan->graph->blocks);
+    assert_false(w.plan->graph->single);
+    for (double c = 1e-5; c < 1; c *= 100) check_residual(&w, c, 1500, &dice);
+    close_world(w);
+  }
+}
+
+/* Numbered at random, masses that differ, and so far apart that every spring pulls. */
+static void large_meshes_are_solved(void **state) {
+  (void)state;
+  uint64_t dice = 15;
+  const mesh m = {.masses = 3000, .springs = 9000, .anchors = 50, .seed = 16};
+  world w = open_world(random_mesh(&m, NULL), &msr_integrator_backward_euler, 0);
+  const msr_arrays s = msr_state_edit(w.state);
+  for (size_t i = 0; i < 3000; i++) s.x[i] *= 1e4, s.y[i] *= 1e4;
+  assert_true(w.plan->graph->single);
+  for (double c = 1e-5; c < 1; c *= 100) check_residual(&w, c, 100, &dice);
+  close_world(w);
+}
+
 /* ---- The factors */
 
 static world turned_lattice(double angle) {
@@ -253,14 +332,15 @@ static void factors_of_a_turned_lattice_are_exact(void **state) {
     world w = turned_lattice(angle);
     msri_stiffness *a = &w.state->stiffness;
     const msr_view s = msr_state_view(w.state);
-    double r[2 * N], x[2 * N], z[2 * N];
-    msri_vector b[N], y[N];
+    double r[2 * N], x[2 * N], z[2 * N], y[2 * N], image[2 * N], rz;
     scatter(2 * N, &dice, 1, NULL, r);
     msri_stiffness_linearise(a, NULL, s.x, s.x, 1e8 * 0.1 / 1500, NULL);
     must(msri_stiffness_solve(a, r, 1e-9, x));
-    for (size_t i = 0; i < N; i++) b[i] = (msri_vector){0.1 * r[i], 0.1 * r[N + i]};
-    msri_stiffness_precondition(a, b, y);
-    for (size_t i = 0; i < N; i++) z[i] = y[i].x, z[N + i] = y[i].y;
+    const uint32_t *order = a->graph->order;
+    for (size_t i = 0; i < 2 * N; i++) y[i] = 0.1 * r[order[i % N] + (i < N ? 0 : N)];
+    msri_stiffness_forward(a, 0, a->graph->blocks, y);
+    msri_stiffness_backward(a, y, image, &rz);
+    for (size_t i = 0; i < 2 * N; i++) z[order[i % N] + (i < N ? 0 : N)] = y[i];
     if (!(distance(2 * N, x, z) < 100 * 1e8 * DBL_EPSILON * largest(2 * N, x)))
       fail_msg("angle %g: %g of %g", angle, distance(2 * N, x, z), largest(2 * N, x));
     close_world(w);
@@ -317,6 +397,8 @@ int main(void) {
       cmocka_unit_test(too_many_are_refused),
       cmocka_unit_test(solutions_are_those_of_dense_matrices),
       cmocka_unit_test(the_matrix_is_the_derivative),
+      cmocka_unit_test(large_lattices_are_solved),
+      cmocka_unit_test(large_meshes_are_solved),
       cmocka_unit_test(factors_of_a_turned_lattice_are_exact),
       cmocka_unit_test(stiff_beyond_rounding_is_told),
       cmocka_unit_test(nonsense_is_told),

@@ -9,7 +9,7 @@
 /* Measured (x86-64, lattices of 100^2 and 316^2 masses, 4 neighbours), in evaluations of the
  * acceleration: the mean force between two places, the matrix and its factors, an iteration of
  * conjugate gradients. */
-static const double cost_between = 2, cost_linearise = 12, cost_iteration = 8;
+static const double cost_between = 2, cost_linearise = 8, cost_iteration = 8;
 
 /* More evaluations than a step takes that is going to succeed. */
 enum { MOST_EVALUATIONS = 30 };

@@ -1,5 +1,5 @@
 /* factor.c - incomplete factors L D L^T of A = M + c K, by blocks of 2 x 2 in the order of the
- * masses: only D differs from that of A, by what elimination does to the diagonal (Kershaw 1978, J.
+ * graph: only D differs from that of A, by what elimination does to the diagonal (Kershaw 1978, J.
  * Comput. Phys. 26, 43; no fill-in). On a lattice of 4 neighbours that is turned but not deformed
  * rows and columns decouple into chains, which have none: there it is exact.
  *
@@ -7,74 +7,117 @@
  * row, s d^-1 (d - s), which is positive where s and d - s are. Springs that push take less than
  * half of a mass. So no pivot vanishes until c k / m nears 1e16, where a number has no room for the
  * mass beside the spring; then no solution is found. */
-#include "solvers/stiffness.h"
+#include "solvers/singles.h"
+#include "solvers/strips.h"
 
 #include <string.h>
 
+/* Pivots of a block of masses. */
+typedef struct pivots {
+  double xx[MSRI_GRAPH_BLOCK], xy[MSRI_GRAPH_BLOCK], yy[MSRI_GRAPH_BLOCK];
+} pivots;
+
 static void start_pivots(msri_stiffness *a) {
-  for (size_t i = 0; i < a->graph->n; i++) {
-    const double m = a->m[i * a->m_stride];
-    a->pivot[i] = (msri_block){m, 0, m};
+  const size_t n = a->graph->n;
+  for (size_t i = 0; i < n; i++) a->pivot.xx[i] = a->pivot.yy[i] = a->m[i * a->m_stride];
+  memset(a->pivot.xy, 0, n * sizeof *a->pivot.xy);
+  for (size_t s = 0; s < a->springs->n_anchors; s++) {
+    a->pivot.xx[a->place[s]] += a->anchor.xx[s];
+    a->pivot.xy[a->place[s]] += a->anchor.xy[s];
+    a->pivot.yy[a->place[s]] += a->anchor.yy[s];
   }
-  for (size_t n = 0; n < a->springs->n_anchors; n++) {
-    msri_block *pivot = &a->pivot[a->springs->anchor[n].i];
-    *pivot = msri_block_sum(*pivot, a->anchor[n]);
+}
+
+static void weigh_down(const msri_stiffness *a, const part *b, pivots *d) {
+  for (size_t s = 0; s < b->count; s++)
+    msri_stiffness_weigh_down(a, b->first + s, &d->xx[s], &d->yy[s]);
+}
+
+/* Pivots with all pairs that begin at the block. */
+MSRI_INLINE void gather(const msri_stiffness *a, const part *b, pivots *restrict d) {
+  memcpy(d->xx, a->pivot.xx + b->first, b->count * sizeof *d->xx);
+  memcpy(d->xy, a->pivot.xy + b->first, b->count * sizeof *d->xy);
+  memcpy(d->yy, a->pivot.yy + b->first, b->count * sizeof *d->yy);
+  size_t pair = b->pair;
+  for (const msri_strip *t = b->strip; t < b->end; pair += t->count, t++) {
+    const double *xx = a->tie.xx + pair, *xy = a->tie.xy + pair, *yy = a->tie.yy + pair;
+    const size_t at = t->first - b->first;
+    for (size_t s = 0; s < t->count; s++) {
+      d->xx[at + s] += xx[s];
+      d->xy[at + s] += xy[s];
+      d->yy[at + s] += yy[s];
+    }
   }
 }
 
-static msri_block invert(msri_block d) {
-  const double scale = 1 / (d.xx * d.yy - d.xy * d.xy);
-  return (msri_block){d.yy * scale, -d.xy * scale, d.xx * scale};
+MSRI_INLINE void invert(const msri_stiffness *a, const part *b, const pivots *restrict d) {
+  double *restrict ixx = a->pivot.xx + b->first, *restrict ixy = a->pivot.xy + b->first;
+  double *restrict iyy = a->pivot.yy + b->first;
+  for (size_t s = 0; s < b->count; s++) {
+    const double scale = 1 / (d->xx[s] * d->yy[s] - d->xy[s] * d->xy[s]);
+    ixx[s] = d->yy[s] * scale;
+    ixy[s] = -d->xy[s] * scale;
+    iyy[s] = d->xx[s] * scale;
+  }
 }
 
-/* The symmetric part of s d^-1 (d - s), with l = s d^-1. */
-static msri_block in_a_row(msri_square l, msri_block d, msri_block s) {
-  const double xx = d.xx - s.xx, xy = d.xy - s.xy, yy = d.yy - s.yy;
-  return (msri_block){l.xx * xx + l.xy * xy, (l.xx * xy + l.xy * yy + l.yx * xx + l.yy * xy) / 2,
-                      l.yx * xy + l.yy * yy};
+/* L of a strip's pairs, s d^-1, and the symmetric part of s d^-1 (d - s). */
+MSRI_INLINE void eliminate(const msri_stiffness *a, const msri_strip *t, size_t pair, size_t at,
+                           const pivots *restrict d, pivots *restrict left) {
+  const lowers l = lowers_of(a, pair, t->count);
+  const double *xx = a->tie.xx + pair, *xy = a->tie.xy + pair, *yy = a->tie.yy + pair;
+  const double *ixx = a->pivot.xx + t->first, *ixy = a->pivot.xy + t->first;
+  const double *iyy = a->pivot.yy + t->first;
+  for (size_t s = 0; s < t->count; s++) {
+    const double lxx = xx[s] * ixx[s] + xy[s] * ixy[s], lxy = xx[s] * ixy[s] + xy[s] * iyy[s];
+    const double lyx = xy[s] * ixx[s] + yy[s] * ixy[s], lyy = xy[s] * ixy[s] + yy[s] * iyy[s];
+    const double rxx = d->xx[at + s] - xx[s], rxy = d->xy[at + s] - xy[s];
+    const double ryy = d->yy[at + s] - yy[s];
+    l.xx[s] = (float)lxx, l.xy[s] = (float)lxy;
+    l.yx[s] = (float)lyx, l.yy[s] = (float)lyy;
+    left->xx[s] = lxx * rxx + lxy * rxy;
+    left->xy[s] = (lxx * rxy + lxy * ryy + lyx * rxx + lyy * rxy) / 2;
+    left->yy[s] = lyx * rxy + lyy * ryy;
+  }
 }
 
-/* What is held is as heavy as numbers allow: it moves by nothing that counts. */
-static msri_block pivot_of(const msri_stiffness *a, size_t i, msri_block d) {
-  const double heavy = 1e40 * (d.xx + d.yy);
-  if (a->held && a->held[i]) d.xx += heavy;
-  if (a->held && a->held[a->graph->n + i]) d.yy += heavy;
-  return d;
+MSRI_INLINE void add(size_t n, const double *restrict x, double *restrict y) {
+  for (size_t i = 0; i < n; i++) y[i] += x[i];
 }
+
+MSRI_INLINE void factorise(msri_stiffness *a) {
+  for (size_t n = 0; n < a->graph->blocks; n++) {
+    const part b = part_of(a->graph, n);
+    pivots d;
+    gather(a, &b, &d);
+    if (a->held) weigh_down(a, &b, &d);
+    invert(a, &b, &d);
+    size_t pair = b.pair;
+    for (const msri_strip *t = b.strip; t < b.end; pair += t->count, t++) {
+      pivots left;
+      eliminate(a, t, pair, t->first - b.first, &d, &left);
+      add(t->count, left.xx, a->pivot.xx + t->second);
+      add(t->count, left.xy, a->pivot.xy + t->second);
+      add(t->count, left.yy, a->pivot.yy + t->second);
+    }
+  }
+}
+
+#if MSRI_WIDE
+MSRI_AVX2 static void factorise_avx2(msri_stiffness *a) { factorise(a); }
+#endif
 
 void msri_stiffness_factorise(msri_stiffness *a) {
-  const uint32_t *begin = a->graph->begin, *end = a->graph->end;
   start_pivots(a);
-  for (size_t i = 0; i < a->graph->n; i++) {
-    msri_block d = a->pivot[i];
-    for (size_t p = begin[i]; p < begin[i + 1]; p++) d = msri_block_sum(d, a->tie[p]);
-    d = pivot_of(a, i, d);
-    const msri_block inverse = invert(d);
-    for (size_t p = begin[i]; p < begin[i + 1]; p++) {
-      msri_block *pivot = &a->pivot[end[p]];
-      a->lower[p] = msri_block_product(a->tie[p], inverse);
-      *pivot = msri_block_sum(*pivot, in_a_row(a->lower[p], d, a->tie[p]));
-    }
-    a->pivot[i] = inverse;
+  if (a->graph->single) {
+    msri_singles_factorise(a);
+    return;
   }
-}
-
-double msri_stiffness_precondition(const msri_stiffness *a, const msri_vector *r, msri_vector *z) {
-  const uint32_t *begin = a->graph->begin, *end = a->graph->end;
-  const size_t n = a->graph->n;
-  double rz = 0;
-  memcpy(z, r, n * sizeof *z);
-  for (size_t i = 0; i < n; i++) {
-    const msri_vector y = z[i];
-    for (size_t p = begin[i]; p < begin[i + 1]; p++)
-      z[end[p]] = msri_sum(z[end[p]], msri_square_times(a->lower[p], y));
+#if MSRI_WIDE
+  if (msri_has_avx2()) {
+    factorise_avx2(a);
+    return;
   }
-  for (size_t i = n; i-- > 0;) {
-    msri_vector y = msri_block_times(a->pivot[i], z[i]);
-    for (size_t p = begin[i]; p < begin[i + 1]; p++)
-      y = msri_sum(y, msri_square_times_from_left(a->lower[p], z[end[p]]));
-    z[i] = y = msri_stiffness_loose(a, i, y);
-    rz += msri_product(r[i], y);
-  }
-  return rz;
+#endif
+  factorise(a);
 }

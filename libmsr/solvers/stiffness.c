@@ -19,12 +19,14 @@
 
 /* ---- Memory */
 
+enum { VECTORS = 6 }; /* of conjugate gradients */
+
 static size_t weights(size_t n, size_t m_stride) { return m_stride ? n : 1; }
 
 size_t msri_stiffness_bytes(const msri_graph *graph, size_t anchors, size_t m_stride) {
-  return graph->pairs * (sizeof(msri_block) + sizeof(msri_square)) +
-         (anchors + graph->n) * sizeof(msri_block) + 4 * graph->n * sizeof(msri_vector) +
-         weights(graph->n, m_stride) * sizeof(double);
+  const size_t n = graph->n, matrices = graph->pairs + anchors + n;
+  return (3 * matrices + VECTORS * 2 * n + 2 * weights(n, m_stride)) * sizeof(double) +
+         4 * graph->pairs * sizeof(float) + anchors * sizeof(uint32_t);
 }
 
 /* The mass that each spring may take from its ends, so that a tenth of every mass is left: a matrix
@@ -44,23 +46,41 @@ static double spare(const msr_view *s, double *degree) {
   return least;
 }
 
+static double *take(double **memory, size_t n) {
+  double *taken = *memory;
+  *memory += n;
+  return taken;
+}
+
+static msri_matrices take_matrices(double **memory, size_t n) {
+  double *xx = take(memory, n), *xy = take(memory, n);
+  return (msri_matrices){xx, xy, take(memory, n)};
+}
+
+/* Where each mass is in the order goes to place [n]. */
+static void find_anchors(msri_stiffness *a, uint32_t *place) {
+  for (size_t i = 0; i < a->graph->n; i++) place[a->graph->order[i]] = (uint32_t)i;
+  for (size_t s = 0; s < a->springs->n_anchors; s++) a->place[s] = place[a->springs->anchor[s].i];
+}
+
 msri_stiffness msri_stiffness_place(const msri_graph *graph, const msr_view *s, void *memory) {
-  msri_stiffness a = {.graph = graph,
-                      .springs = s->springs,
-                      .m = s->m,
-                      .m_stride = s->m_stride,
-                      .most = MSRI_MOST_ITERATIONS,
-                      .x = memory};
-  a.residual = a.x + s->n;
-  a.direction = a.residual + s->n;
-  a.image = a.direction + s->n;
-  a.lower = (msri_square *)(a.image + s->n);
-  a.tie = (msri_block *)(a.lower + graph->pairs);
-  a.anchor = a.tie + graph->pairs;
-  a.pivot = a.anchor + s->springs->n_anchors;
-  a.weight = (double *)(a.pivot + s->n);
-  for (size_t i = 0; i < weights(s->n, s->m_stride); i++) a.weight[i] = 1 / (s->m[i] * s->m[i]);
-  a.least = -spare(s, (double *)a.x);
+  const size_t n = s->n, anchors = s->springs->n_anchors, masses = weights(n, s->m_stride);
+  double *rest = memory;
+  msri_stiffness a = {
+      .graph = graph, .springs = s->springs, .m_stride = s->m_stride, .most = MSRI_MOST_ITERATIONS};
+  a.tie = take_matrices(&rest, graph->pairs);
+  a.pivot = take_matrices(&rest, n);
+  a.anchor = take_matrices(&rest, anchors);
+  a.m = take(&rest, masses);
+  a.weight = take(&rest, masses);
+  double **vector[VECTORS] = {&a.x, &a.residual, &a.direction, &a.image, &a.z, &a.product};
+  for (size_t v = 0; v < VECTORS; v++) *vector[v] = take(&rest, 2 * n);
+  a.lower = (float *)rest;
+  a.place = (uint32_t *)(a.lower + 4 * graph->pairs);
+  for (size_t i = 0; i < masses; i++) a.m[i] = s->m[s->m_stride ? graph->order[i] : 0];
+  for (size_t i = 0; i < masses; i++) a.weight[i] = 1 / (a.m[i] * a.m[i]);
+  a.least = -spare(s, a.x);
+  find_anchors(&a, (uint32_t *)a.x);
   return a;
 }
 
@@ -167,13 +187,14 @@ static void add_block(msri_stiffness *a, const place *at, const msr_run_of_sprin
                      .least = a->least};
   stiffen_here(&s, run->stride, at->mean, &b);
   for (size_t m = 0; m < count; m++) {
-    msri_block *tie = &a->tie[pair[m]];
-    *tie = msri_block_sum(*tie, (msri_block){b.xx[m], b.xy[m], b.yy[m]});
+    a->tie.xx[pair[m]] += b.xx[m];
+    a->tie.xy[pair[m]] += b.xy[m];
+    a->tie.yy[pair[m]] += b.yy[m];
   }
 }
 
-static msri_block stiffness_of_anchor(const msri_stiffness *a, const place *at,
-                                      const msr_anchor *to) {
+static void stiffen_anchor(const msri_stiffness *a, const place *at, size_t anchor) {
+  const msr_anchor *to = &a->springs->anchor[anchor];
   blocks b;
   const strands s = {.count = 1,
                      .start = msri_ends_of_anchor(&at->start, to),
@@ -184,7 +205,9 @@ static msri_block stiffness_of_anchor(const msri_stiffness *a, const place *at,
                      .c = at->c,
                      .least = a->least};
   stiffen_any(&s, 0, at->mean, &b);
-  return (msri_block){b.xx[0], b.xy[0], b.yy[0]};
+  a->anchor.xx[anchor] = b.xx[0];
+  a->anchor.xy[anchor] = b.xy[0];
+  a->anchor.yy[anchor] = b.yy[0];
 }
 
 static msr_view view_of(const double *q, size_t n) { return (msr_view){.x = q, .y = q + n}; }
@@ -200,7 +223,7 @@ void msri_stiffness_linearise(msri_stiffness *a, const double *q0, const double 
   const msr_springs *springs = a->springs;
   const uint32_t *pair = a->graph->pair;
   a->held = held;
-  memset(a->tie, 0, a->graph->pairs * sizeof *a->tie);
+  memset(a->tie.xx, 0, 3 * a->graph->pairs * sizeof *a->tie.xx);
   for (size_t r = 0; r < springs->n_runs; r++) {
     const msr_run_of_springs *run = &springs->run[r];
     for (size_t s = 0; s < run->count; s += MSRI_SPRINGS_BLOCK) {
@@ -209,7 +232,6 @@ void msri_stiffness_linearise(msri_stiffness *a, const double *q0, const double 
     }
     pair += run->count;
   }
-  for (size_t n = 0; n < springs->n_anchors; n++)
-    a->anchor[n] = stiffness_of_anchor(a, &at, &springs->anchor[n]);
+  for (size_t n = 0; n < springs->n_anchors; n++) stiffen_anchor(a, &at, n);
   msri_stiffness_factorise(a);
 }
