@@ -20,8 +20,9 @@
  *
  * Threads: there is no global state. A scene, a state, a renderer or a sink belongs to one thread
  * at a time; a plan is immutable and may be shared by any number of states in any number of
- * threads. The library begins threads of its own only where it's told to (msr_run_options), and
- * ends them before it returns.
+ * threads. The library begins threads of its own only where it's told to: for
+ * msr_run_options.threads until msr_run returns, for msr_plan_options.threads until msr_state_free;
+ * they take no signals.
  *
  * Option structs are valid when all zero: zero means the default that their fields state.
  */
@@ -873,10 +874,12 @@ typedef struct msr_run_options {
   const msr_sink *sinks; /* [n_sinks], each given every frame in turn; then they complete it */
   size_t n_sinks;
   /* Called with the state before every substep; row by row, before as many as there are up to the
-   * next frame or look, or as take a moment; and before every stretch of long steps, which is an
-   * iteration or a part of it (NULL: none); a status other than MSR_OK ends the run and comes back
-   * unchanged. Running the state again goes on from there. */
+   * next frame or look, or as take a moment, but at most poll_steps (0: any number; few make steps
+   * slow); and before every stretch of long steps, which is an iteration or a part of it (NULL:
+   * none). A status other than MSR_OK ends the run and comes back unchanged. Running the state
+   * again goes on from there. */
   msr_status (*poll)(void *data, const msr_state *state);
+  uint64_t poll_steps;
   void *data;
   /* 2 or more: frames are completed by the sinks in a thread that lasts as long as the run, beside
    * the simulation of the next one; what fails there comes back at the next frame or at the end. 0

@@ -6,7 +6,7 @@ cd "${1:-$(dirname "$0")/..}"
 
 # Prints `file header` for every #include "..." of libmsr/ and cli/; looks where the compiler looks.
 includes() {
-  grep -Hoe '^ *# *include *"[^"]*"' libmsr/*/*.[ch] cli/*.[ch] | tr -d '"' |
+  grep -Hoe '^ *# *include *"[^"]*"' libmsr/*/*.[ch] libmsr/*/*.inc cli/*.[ch] | tr -d '"' |
     while IFS=': ' read -r file _ header; do
       case $file in cli/*) roots=include ;; *) roots='include libmsr' ;; esac
       found="missing:$header"

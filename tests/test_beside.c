@@ -290,8 +290,12 @@ static void a_run_that_is_stopped_leaves_whole_frames(void **unused) {
     witness w = {0};
     const msr_sink sink = sink_of(&w);
     uint64_t left = stop;
-    msr_run_options options = {
-        .sinks = &sink, .n_sinks = 1, .poll = count_down, .data = &left, .threads = 2};
+    msr_run_options options = {.sinks = &sink,
+                               .n_sinks = 1,
+                               .poll = count_down,
+                               .poll_steps = 1,
+                               .data = &left,
+                               .threads = 2};
     msr_state *state = new_state();
     assert_int_equal(msr_run(state, &options, NULL), MSR_EINTR);
     assert_true(w.taken >= 1 && w.sound == w.taken);

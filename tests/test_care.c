@@ -289,7 +289,8 @@ static void interrupted_runs_have_the_same_bits(void **unused) {
     interruption s = {0, at[i]};
     frames f = {0, 0};
     const msr_sink sink = {.self = &f, .write = take};
-    const msr_run_options options = {.sinks = &sink, .n_sinks = 1, .poll = interrupt, .data = &s};
+    const msr_run_options options = {
+        .sinks = &sink, .n_sinks = 1, .poll = interrupt, .poll_steps = 1, .data = &s};
     assert_int_equal(msr_run(w.state, &options, &why), MSR_EINTR);
     must(msr_state_save(w.state, path_of("state"), &why));
     must(msr_state_load(other.state, path_of("state"), &why));

@@ -299,14 +299,15 @@ static void interrupted_runs_have_the_same_bits(void **state) {
   conf.iterations = 10;
   world whole = falling(&conf, &automatic);
   interruption never = {0, 0};
-  must(msr_run(whole.state, &(msr_run_options){.poll = interrupt, .data = &never}, &why));
+  must(msr_run(whole.state, &(msr_run_options){.poll = interrupt, .poll_steps = 1, .data = &never},
+               &why));
   const msr_work work = msr_state_work(whole.state);
   assert_true(work.leaps > 0 && work.leapt < 10 * msr_plan_describe(whole.plan).substeps);
   assert_true(msr_state_contacts(whole.state) > 0);
   for (uint64_t at = 1; at < never.calls; at += at < 120 ? 1 : never.calls / 10) {
     interruption s = {0, at};
     world cut = falling(&conf, &automatic), other = falling(&conf, &automatic);
-    const msr_run_options options = {.poll = interrupt, .data = &s};
+    const msr_run_options options = {.poll = interrupt, .poll_steps = 1, .data = &s};
     assert_int_equal(msr_run(cut.state, &options, &why), MSR_EINTR);
     must(msr_state_save(cut.state, path_of("state"), &why));
     must(msr_state_load(other.state, path_of("state"), &why));

@@ -118,7 +118,7 @@ static msr_status look(void *data, const msr_state *state) {
 
 static msr_status run_slice(msr_state *state, uint64_t end, int polls) {
   watch w = {polls, INFINITE};
-  return msri_step(state, end - msr_state_iteration(state), &(msri_poll){look, &w}, &why);
+  return msri_step(state, end - msr_state_iteration(state), &(msri_poll){look, &w, 1}, &why);
 }
 
 static void reload(world *w) {
@@ -183,7 +183,7 @@ static void endless_runs_go_on_until_they_are_stopped(void **unused) {
   world w = plain();
   advance(&w, 3);
   watch until = {5, INFINITE};
-  assert_int_equal(msri_step(w.state, UINT64_MAX, &(msri_poll){look, &until}, &why), MSR_EINTR);
+  assert_int_equal(msri_step(w.state, UINT64_MAX, &(msri_poll){look, &until, 1}, &why), MSR_EINTR);
   assert_true(w.state->iteration == 3 && w.state->substep == 5);
   close_world(w);
 }
@@ -205,7 +205,7 @@ static void care_goes_back_to_a_change_at_most(void **unused) {
     advance(&w, 10);
     if (reloads) reload(&w);
     watch since = {INT32_MAX, INFINITE};
-    must(msri_step(w.state, 50, &(msri_poll){look, &since}, &why));
+    must(msri_step(w.state, 50, &(msri_poll){look, &since, 1}, &why));
     assert_int_equal(msr_state_work(w.state).careful, 5);
     if (since.earliest != changed)
       fail_msg("changed at %.17g, then back at %.17g", changed, since.earliest);

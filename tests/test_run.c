@@ -435,7 +435,8 @@ static void a_run_stopped_early_leaves_whole_files(void **unused) {
   must(msr_trajectory_open(plan, path_of("t.npy"), &sinks[0], &why));
   must(msr_stats_open(plan, path_of("s.csv"), &sinks[1], &why));
   must(msr_frames_open(plan, path_of("a"), NULL, false, &sinks[2], &why));
-  const msr_run_options options = {.sinks = sinks, .n_sinks = 3, .poll = count_down, .data = &left};
+  const msr_run_options options = {
+      .sinks = sinks, .n_sinks = 3, .poll = count_down, .poll_steps = 1, .data = &left};
   assert_int_equal(msr_run(state, &options, NULL), MSR_EINTR);
   msr_state_free(state);
   for (int s = 0; s < 3; s++) must(msr_sink_close(&sinks[s], &why));
@@ -462,7 +463,8 @@ static void a_pipe_is_left_as_it_is(void **unused) {
   msr_sink sink;
   must(msr_trajectory_open(plan, path, &sink, &why));
   msr_state *state = new_state(plan);
-  const msr_run_options options = {.sinks = &sink, .n_sinks = 1, .poll = count_down, .data = &left};
+  const msr_run_options options = {
+      .sinks = &sink, .n_sinks = 1, .poll = count_down, .poll_steps = 1, .data = &left};
   assert_int_equal(msr_run(state, &options, NULL), MSR_EINTR);
   must(msr_sink_close(&sink, &why));
   msr_state_free(state);
@@ -625,7 +627,7 @@ static void a_run_goes_on_where_it_was_stopped(void **unused) {
     msr_state *state = new_state(plan);
     uint64_t left = stop;
     const msr_run_options options = {
-        .sinks = &sink, .n_sinks = 1, .poll = count_down, .data = &left};
+        .sinks = &sink, .n_sinks = 1, .poll = count_down, .poll_steps = 1, .data = &left};
     assert_int_equal(msr_run(state, &options, NULL), MSR_EINTR);
     assert_int_equal(msr_state_iteration(state), stop / msr_plan_describe(plan).substeps);
     must(msr_run(state, &(msr_run_options){.sinks = &sink, .n_sinks = 1}, &why));

@@ -73,4 +73,4 @@ static msr_status poll(void *data, const msr_state *state) {
   return msri_watch_look(watch);
 }
 
-msri_poll msri_watch_poll(msri_watch *watch) { return (msri_poll){poll, watch}; }
+msri_poll msri_watch_poll(msri_watch *watch) { return (msri_poll){poll, watch, 0}; }

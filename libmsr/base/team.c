@@ -8,6 +8,7 @@
 #include <limits.h>
 #include <pthread.h>
 #include <sched.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 
@@ -85,6 +86,18 @@ void msri_team_run(msri_team *team, msri_team_work *work, void *self) {
 
 unsigned msri_team_threads(const msri_team *team) { return team->threads; }
 
+/* Signals are for the program's own threads, but for those that a thread brings on itself. */
+static bool begin_thread(member *m) {
+  static const int own[] = {SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGTRAP, SIGSYS};
+  sigset_t others, before;
+  sigfillset(&others);
+  for (size_t i = 0; i < sizeof own / sizeof *own; i++) sigdelset(&others, own[i]);
+  pthread_sigmask(SIG_BLOCK, &others, &before);
+  const bool begun = pthread_create(&m->thread, NULL, serve, m) == 0;
+  pthread_sigmask(SIG_SETMASK, &before, NULL);
+  return begun;
+}
+
 msr_status msri_team_create(unsigned threads, msri_team **team, msr_error *err) {
   const size_t size = sizeof(msri_team) + threads * sizeof(member);
   msri_team *made = msri_alloc(1, size, "threads", err);
@@ -94,7 +107,7 @@ msr_status msri_team_create(unsigned threads, msri_team **team, msr_error *err) 
   pthread_cond_init(&made->more, NULL);
   for (unsigned n = 1; n < threads; n++, made->started++) {
     made->member[n] = (member){.team = made, .number = n};
-    if (pthread_create(&made->member[n].thread, NULL, serve, &made->member[n]) == 0) continue;
+    if (begin_thread(&made->member[n])) continue;
     msri_team_free(made);
     return msri_fail(err, MSR_ENOMEM, "only %u of %u threads can be started; ask for fewer", n,
                      threads);

@@ -49,7 +49,8 @@ static uint64_t next_frame(const msr_state *state) {
 
 static msr_status run(msr_state *state, msri_beside *beside, msr_error *err) {
   const msr_plan *plan = state->plan;
-  const msri_poll poll = {beside->options->poll, beside->options->data};
+  const msri_poll poll = {beside->options->poll, beside->options->data,
+                          beside->options->poll_steps};
   msr_status status = MSR_OK;
   for (uint64_t f = next_frame(state); f < plan->figures.images && status == MSR_OK; f++) {
     status = step_to(state, msr_plan_frame_iteration(plan, f), &poll, err);

@@ -122,10 +122,11 @@ static uint64_t least(uint64_t a, uint64_t b) { return a < b ? a : b; }
 
 /* As many steps as there are up to the end of an iteration or the next look, or as take a moment.
  */
-static uint64_t steps_to(const msr_state *state, uint64_t end) {
+static uint64_t steps_to(const msr_state *state, uint64_t end, const msri_poll *poll) {
   const uint64_t substeps = state->plan->figures.substeps, iterations = end - state->iteration;
   const uint64_t all = iterations > UINT64_MAX / substeps ? UINT64_MAX : iterations * substeps;
-  const uint64_t moment = 1 + A_MOMENT / (state->plan->figures.masses + 1);
+  const uint64_t takes = 1 + A_MOMENT / (state->plan->figures.masses + 1);
+  const uint64_t moment = poll->call && poll->most > 0 ? least(takes, poll->most) : takes;
   const uint64_t look = least(msri_guard_patience(state), msri_care_patience(state));
   return least(least(all - state->substep, moment), look);
 }
@@ -158,7 +159,8 @@ static msr_status sweep(msr_state *state, uint64_t end, const msri_poll *poll, b
   const double most = sqrt(2 * state->guard.most / state->plan->uniform_mass);
   const msri_swept swept = {state->q,       state->q + n,       state->v,    state->v + n,
                             state->scratch, state->meter.calls, state->armed};
-  const msri_course way = {state->plan, state->iteration, state->substep, steps_to(state, end)};
+  const msri_course way = {state->plan, state->iteration, state->substep,
+                           steps_to(state, end, poll)};
   msr_status status = msri_poll_call(poll, state);
   if (status != MSR_OK) return status;
   const msri_progress progress = sweep_timed(state, &swept, way, most);
@@ -215,5 +217,5 @@ msr_status msri_step(msr_state *state, uint64_t iterations, const msri_poll *pol
 }
 
 msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err) {
-  return msri_step(state, iterations, &(msri_poll){NULL, NULL}, err);
+  return msri_step(state, iterations, &(msri_poll){NULL, NULL, 0}, err);
 }

@@ -8,6 +8,7 @@
 typedef struct msri_poll {
   msr_status (*call)(void *data, const msr_state *state);
   void *data;
+  uint64_t most; /* substeps between two calls; 0: as many as suit */
 } msri_poll;
 
 /* Calls it; the time that it takes is nobody's. */
