@@ -92,8 +92,16 @@ static double step_past(const msri_pass *pass, const msri_stage *stage, const ms
   return fastest;
 }
 
+static bool is_unchanged(const msri_pass *pass, const msri_object *object, const msri_field *f) {
+  bool same = true;
+  for (size_t r = 0; r < object->rows && same; r++)
+    same = msri_field_is(f, &pass->plan->objects, object->row + r, pass->state,
+                         MSRI_MARGIN + r * length(object));
+  return same;
+}
+
 double msri_patch_run(const msri_pass *pass, const msri_object *object, bool filled, bool kept,
-                      double *memory, uint64_t *met) {
+                      double *memory, uint64_t *met, bool *same) {
   const msri_objects *objects = &pass->plan->objects;
   const size_t all = stride(msri_patch_cells(object), length(object));
   const msri_field f = msri_field_place(pass->ways, all, memory);
@@ -109,6 +117,7 @@ double msri_patch_run(const msri_pass *pass, const msri_object *object, bool fil
                                      : msri_field_step(pass, stage, &cells);
     fastest = msri_worse(speed, fastest);
   }
+  if (same) *same = is_unchanged(pass, object, &f);
   for (size_t r = 0; r < object->rows && !kept; r++)
     msri_field_empty(&f, objects, object->row + r, pass->state, MSRI_MARGIN + r * length(object));
   return fastest;

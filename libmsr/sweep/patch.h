@@ -14,8 +14,8 @@ size_t msri_patch_size(int ways, bool meets, const msri_object *object);
 
 /* Takes an object through all stages of a pass; what is in memory is `filled` with it already, or
  * is to be `kept` for the next pass. Returns the largest speed along an axis, and counts
- * collisions. */
+ * collisions. `same`, unless it's NULL: has nothing changed, bit by bit? */
 double msri_patch_run(const msri_pass *pass, const msri_object *object, bool filled, bool kept,
-                      double *memory, uint64_t *met);
+                      double *memory, uint64_t *met, bool *same);
 
 #endif
