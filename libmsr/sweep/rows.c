@@ -409,7 +409,7 @@ double msri_rows_run(const msri_pass *pass, const msri_object *object, const msr
   w.ring = w.marks + marks_size(width);
   place_slots(&w, memory + msri_rows_size(pass->ways, false, width, pass->stages), met);
   memset(w.pulls, 0, pulls_size(pass->ways, width, pass->stages) * sizeof *w.pulls);
-  if (w.in_place) set_ties(&w);
+  if (w.whole) set_ties(&w);
   run(&w);
   return w.fastest;
 }
