@@ -86,6 +86,11 @@ static void print_leaps(const watch *w, const msr_state *state) {
           w->plan.leaps->name, 100 * (double)work.leapt / all);
 }
 
+static void print_rest(const msr_state *state) {
+  const size_t resting = msr_state_resting(state);
+  if (resting > 0) fprintf(stderr, ", %zu object%s at rest", resting, resting == 1 ? "" : "s");
+}
+
 static void tell_of_care(const watch *w, const msr_state *state) {
   const msr_work work = msr_state_work(state);
   char text[200];
@@ -118,6 +123,7 @@ void watch_print_summary(const watch *w, const msr_state *state, const effect_li
   fprintf(stderr, took < 10 ? "%.2g s" : "%.0f s", took);
   if (w->s->verbose) print_energy(w);
   if (w->s->verbose) print_leaps(w, state);
+  if (w->s->verbose) print_rest(state);
   fputs("\n", stderr);
   if (list) times_print(stderr, list, state, out, took);
   tell_of_care(w, state);

@@ -796,6 +796,13 @@ MSR_API double msr_state_seconds(const msr_state *state, size_t effect);
  * back with their steps (figures.care). */
 MSR_API uint64_t msr_state_contacts(const msr_state *state);
 
+/* Separate objects of the picture that are at rest, found so at one of the looks, 256 steps apart:
+ * a step leaves each of their masses where it is, bit by bit, and no force depends on time. They
+ * are stepped no more, which changes no bit and no count of collisions, until the state is edited,
+ * loaded, copied to or goes back for care. 0 where nothing is left out: with collisions of masses,
+ * springs or masses that a program adds, and methods that aren't made of kicks and drifts. */
+MSR_API size_t msr_state_resting(const msr_state *state);
+
 /* Steps so far, those that an adaptive method chose and those that ended at an impact or were tried
  * in search of it included, and evaluations of the acceleration. All but `careful` begin at 0 after
  * msr_state_load. */

@@ -184,6 +184,7 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
   to->care.guard = from->care.guard;
   to->care.lost = from->care.lost;
   memcpy(to->q, from->q, l.end - l.q);
+  if (to->sweep) msri_sweep_wake(to->sweep);
 }
 
 void msri_state_keep(const msr_state *state, double *kept) {
@@ -197,6 +198,7 @@ static void moved(msr_state *state) {
   state->fresh = false;
   state->known.q = NULL;
   if (state->plan->discs) msri_discs_moved(state->plan->discs, state->discs);
+  if (state->sweep) msri_sweep_wake(state->sweep);
 }
 
 void msri_state_put_back(msr_state *state, const double *kept) {
@@ -249,6 +251,10 @@ msr_arrays msr_state_edit(msr_state *state) {
 uint64_t msr_state_iteration(const msr_state *state) { return state->iteration; }
 
 uint64_t msr_state_contacts(const msr_state *state) { return state->contacts; }
+
+size_t msr_state_resting(const msr_state *state) {
+  return state->sweep ? msri_sweep_resting(state->sweep) : 0;
+}
 
 msr_work msr_state_work(const msr_state *state) {
   return (msr_work){.steps = state->work.steps,

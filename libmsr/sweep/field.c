@@ -54,6 +54,22 @@ void msri_field_empty(const msri_field *f, const msri_objects *objects, size_t r
   }
 }
 
+static bool is_same(const double *a, const double *b, size_t n) {
+  return memcmp(a, b, n * sizeof *a) == 0;
+}
+
+bool msri_field_is(const msri_field *f, const msri_objects *objects, size_t row,
+                   const msri_swept *state, size_t at) {
+  bool same = true;
+  for (size_t s = objects->row[row]; s < objects->row[row + 1] && same; s++) {
+    const msri_piece *piece = &objects->piece[s];
+    const size_t c = at + piece->column, i = piece->first, n = piece->count;
+    same = is_same(f->x + c, state->x + i, n) && is_same(f->y + c, state->y + i, n) &&
+           is_same(f->vx + c, state->vx + i, n) && is_same(f->vy + c, state->vy + i, n);
+  }
+  return same;
+}
+
 /* ---- Springs */
 
 void msri_field_mark(double *marks, const msri_objects *objects, size_t row, double k,

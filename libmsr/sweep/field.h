@@ -35,6 +35,10 @@ void msri_field_fill(const msri_field *f, const msri_objects *objects, size_t ro
 void msri_field_empty(const msri_field *f, const msri_objects *objects, size_t row,
                       const msri_swept *to, size_t at);
 
+/* Are a row's cells what the state holds, bit by bit? */
+bool msri_field_is(const msri_field *f, const msri_objects *objects, size_t row,
+                   const msri_swept *state, size_t at);
+
 /* k where a row has a mass, in marks[width]; 0 elsewhere, from -1 to width. */
 void msri_field_mark(double *marks, const msri_objects *objects, size_t row, double k,
                      size_t width);

@@ -96,6 +96,14 @@ static double step_past(const msri_pass *pass, const msri_stage *stage, const ms
   return fastest;
 }
 
+static bool is_unchanged(const msri_pass *pass, const msri_object *object, const msri_field *f) {
+  bool same = true;
+  for (size_t r = 0; r < object->rows && same; r++)
+    same = msri_field_is(f, &pass->plan->objects, object->row + r, pass->state,
+                         MSRI_MARGIN + r * length(object));
+  return same;
+}
+
 static msri_field place(const msri_pass *pass, const msri_object *object, double *memory,
                         msri_cells *cells) {
   const size_t all = stride(msri_patch_cells(object), length(object));
@@ -117,7 +125,7 @@ msri_cells msri_patch_open(const msri_pass *pass, const msri_object *object, dou
 }
 
 double msri_patch_run(const msri_pass *pass, const msri_object *object, bool filled, bool kept,
-                      double *memory, msri_tally *tally) {
+                      double *memory, msri_tally *tally, bool *same) {
   const msri_objects *objects = &pass->plan->objects;
   msri_cells cells;
   const msri_field f = place(pass, object, memory, &cells);
@@ -131,6 +139,7 @@ double msri_patch_run(const msri_pass *pass, const msri_object *object, bool fil
                                      : msri_field_step(pass, stage, &cells);
     fastest = msri_worse(speed, fastest);
   }
+  if (same) *same = is_unchanged(pass, object, &f);
   for (size_t r = 0; r < object->rows && !kept; r++)
     msri_field_empty(&f, objects, object->row + r, pass->state, MSRI_MARGIN + r * length(object));
   return fastest;

@@ -18,8 +18,8 @@ msri_cells msri_patch_open(const msri_pass *pass, const msri_object *object, dou
 
 /* Takes an object through all stages of a pass; what is in memory is `filled` with it already, or
  * is to be `kept` for the next pass. Returns the largest speed along an axis, and counts
- * collisions. */
+ * collisions. `same`, unless it's NULL: has nothing changed, bit by bit? */
 double msri_patch_run(const msri_pass *pass, const msri_object *object, bool filled, bool kept,
-                      double *memory, msri_tally *tally);
+                      double *memory, msri_tally *tally, bool *same);
 
 #endif

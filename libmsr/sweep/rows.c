@@ -214,6 +214,9 @@ static void close_row(wave *w, size_t row, bool changed) {
   slot *s = &w->slot[place_of(w, row)];
   s->row = none;
   if (s->in_place || !changed) return;
+  if (w->part->same && *w->part->same)
+    *w->part->same =
+        msri_field_is(&s->at, &w->pass->plan->objects, w->object->row + row, w->pass->state, 0);
   msri_field_empty(&s->at, &w->pass->plan->objects, w->object->row + row, w->pass->state, 0);
 }
 
@@ -401,7 +404,8 @@ double msri_rows_run(const msri_pass *pass, const msri_object *object, const msr
   double *memory = part->memory[part->number];
   wave w = {.pass = pass, .object = object, .part = part, .wide = wide(width)};
   w.whole = object->masses == object->rows * width;
-  w.in_place = w.whole;
+  w.in_place = w.whole && !part->same;
+  if (part->same) *part->same = true;
   w.edge = memory;
   w.pulls = w.edge + edge_size(width, pass->stages);
   w.ties = w.pulls + pulls_size(pass->ways, width, pass->stages);
@@ -410,7 +414,7 @@ double msri_rows_run(const msri_pass *pass, const msri_object *object, const msr
   w.ring = w.marks + marks_size(width);
   place_slots(&w, memory + msri_rows_size(pass->ways, false, width, pass->stages), tally);
   memset(w.pulls, 0, pulls_size(pass->ways, width, pass->stages) * sizeof *w.pulls);
-  if (w.in_place) set_ties(&w);
+  if (w.whole) set_ties(&w);
   run(&w);
   return w.fastest;
 }

@@ -18,6 +18,7 @@ typedef struct msri_part {
   _Atomic unsigned *opened; /* [parts]: wedges left so far; */
   unsigned turn;            /* this is the one of that number */
   double *const *memory;    /* [parts]: of each */
+  bool *same;               /* of the only part: has nothing changed, bit by bit? NULL: who cares */
 } msri_part;
 
 /* Doubles of memory for a part of an object of such width; `meets`: something may be in its way. */

@@ -4,6 +4,7 @@
 
 #include "integrators/splitting.h"
 #include "sweep/patch.h"
+#include "sweep/rest.h"
 #include "sweep/rows.h"
 #include "sweep/shares.h"
 
@@ -24,8 +25,10 @@ typedef struct worker {
   double *patch, *rows; /* for an object that it has to itself */
   double fastest;
   msri_tally tally;
-  unsigned turn; /* see msri_sweep */
-  char apart[2 * LINE - 3 * sizeof(double *) - sizeof(msri_tally) - sizeof(unsigned)];
+  uint64_t stays; /* collisions of what the step left as it was */
+  unsigned turn;  /* see msri_sweep */
+  char apart[2 * LINE - 3 * sizeof(double *) - sizeof(msri_tally) - sizeof(uint64_t) -
+             sizeof(unsigned)];
 } worker;
 
 struct msri_sweep {
@@ -41,6 +44,8 @@ struct msri_sweep {
   bool alone;               /* no thread has more than one object: */
   bool filled, kept;        /* small ones stay in their patches from one pass to the next */
   msri_shares shares;       /* if the plan is timed */
+  bool rests;               /* objects may be left out: */
+  msri_rest rest;
   msri_stage stage[MSRI_MOST_STAGES];
 };
 
@@ -135,7 +140,8 @@ static size_t doubles_of(const room *r) { return r->patch + r->rows + r->parts; 
 static size_t bytes_of(const msr_plan *plan, const room *r) {
   const size_t thread = sizeof(worker) + doubles_of(r) * sizeof(double) + sizeof(double *) +
                         2 * sizeof(_Atomic unsigned);
-  return sizeof(msri_sweep) + plan->threads * thread + r->shares * sizeof(double) + 2 * LINE;
+  const size_t rest = plan->objects.n * (sizeof(bool) + 1);
+  return sizeof(msri_sweep) + plan->threads * thread + r->shares * sizeof(double) + rest + 2 * LINE;
 }
 
 size_t msri_sweep_bytes(const msr_plan *plan) {
@@ -155,6 +161,8 @@ static void place(msri_sweep *s, const room *r, bool timed) {
   s->parts = (void *)(shares + r->shares);
   s->opened = (void *)(s->parts + threads);
   s->closed = s->opened + threads;
+  s->rest.same = (void *)((char *)(s->parts + threads) + 2 * threads * sizeof *s->opened);
+  s->rest.how = (void *)(s->rest.same + s->pass.plan->objects.n);
   for (size_t t = 0; t < threads; t++, doubles += doubles_of(r)) {
     s->worker[t].patch = doubles;
     s->worker[t].rows = doubles + r->patch;
@@ -185,6 +193,8 @@ msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error
                            .besides = besides_of(plan),
                            .meets = msri_plan_meets(plan)};
   place(made, &r, plan->timed);
+  made->rests = msri_rest_is_known(plan) &&
+                msri_course_stages(&(msri_course){.plan = plan, .steps = 1}) <= (uint64_t)r.depth;
   const msr_status status =
       plan->threads > 1 ? msri_team_create(plan->threads, &made->team, err) : MSR_OK;
   if (status == MSR_OK)
@@ -199,6 +209,10 @@ void msri_sweep_free(msri_sweep *sweep) {
   msri_team_free(sweep->team);
   free(sweep);
 }
+
+size_t msri_sweep_resting(const msri_sweep *sweep) { return sweep->rest.n; }
+
+void msri_sweep_wake(msri_sweep *sweep) { msri_rest_wake(sweep->pass.plan, &sweep->rest); }
 
 /* ---- Passes */
 
@@ -230,21 +244,45 @@ static double run_large(msri_sweep *s, const msri_object *object, unsigned threa
   return 0;
 }
 
+/* A pass of one step for an object that may be at rest. One thread takes it, a large one the first,
+ * whose memory for a part no other looks at. */
+static double look_at(msri_sweep *s, size_t n, unsigned thread) {
+  const msri_object *object = &s->pass.plan->objects.object[n];
+  const bool small = is_small(s->pass.plan, object);
+  worker *me = &s->worker[thread];
+  const uint64_t met = me->tally.met;
+  const size_t begin[] = {0, object->rows};
+  bool *same = &s->rest.same[n];
+  msri_part all = {.parts = 1, .begin = begin, .memory = &me->rows, .same = same};
+  double fastest;
+  if (thread != (small ? n % s->threads : 0)) return 0;
+  if (parts_of(s->pass.plan, object, s->depth) > 1) all.memory = s->parts;
+  if (small)
+    fastest = msri_patch_run(&s->pass, object, false, false, me->patch, &me->tally, same);
+  else
+    fastest = msri_rows_run(&s->pass, object, &all, &me->tally);
+  if (*same) me->stays += me->tally.met - met;
+  return fastest;
+}
+
 static void work(void *self, unsigned thread) {
   msri_sweep *s = self;
   const msri_objects *objects = &s->pass.plan->objects;
   worker *me = &s->worker[thread];
   unsigned turn = s->turn;
   me->fastest = 0;
-  me->tally.met = 0;
+  me->tally.met = me->stays = 0;
   for (size_t n = 0; n < objects->n; n++) {
     const msri_object *object = &objects->object[n];
     const unsigned owner = (unsigned)(n % s->threads);
     double fastest = 0;
-    if (!is_small(s->pass.plan, object))
+    if (s->rest.how[n] == MSRI_LEFT_OUT) continue;
+    if (s->rest.how[n] == MSRI_LOOKED_AT)
+      fastest = look_at(s, n, thread);
+    else if (!is_small(s->pass.plan, object))
       fastest = run_large(s, object, thread, owner, &turn);
     else if (owner == thread)
-      fastest = msri_patch_run(&s->pass, object, s->filled, s->kept, me->patch, &me->tally);
+      fastest = msri_patch_run(&s->pass, object, s->filled, s->kept, me->patch, &me->tally, NULL);
     me->fastest = msri_worse(fastest, me->fastest);
   }
   me->turn = turn;
@@ -305,21 +343,32 @@ static void run_course(msri_sweep *s, msri_course *course, double fastest, msri_
   p->steps += course->steps;
 }
 
-/* Debts are paid within a pass: there, courses are as long as that. */
+/* The step that objects were looked at in is done. */
+static void end_look(msri_sweep *s) {
+  uint64_t met = 0;
+  for (unsigned t = 0; t < s->threads; t++) met += s->worker[t].stays;
+  msri_rest_leave_out(s->pass.plan, met, &s->rest);
+}
+
+/* Debts are paid within a pass: there, courses are as long as that. A look takes one step. */
 msri_progress msri_sweep_run(msri_sweep *s, const msri_swept *state, msri_course course,
                              double fastest) {
   msri_progress progress = {0};
   const uint64_t most = s->pass.meets ? (uint64_t)s->depth - 1 : course.steps;
   const uint64_t substeps = course.plan->figures.substeps;
   s->pass.state = state;
-  for (uint64_t left = course.steps; left > 0 && !progress.fast;) {
-    course.steps = left < most ? left : most;
+  bool looks = s->rests && msri_rest_look(course.plan, state, &s->rest);
+  for (uint64_t left = course.steps; left > 0 && !progress.fast; looks = false) {
+    course.steps = looks ? 1 : left < most ? left : most;
     const uint64_t steps = course.steps;
     run_course(s, &course, fastest, &progress);
+    progress.met += course.steps * s->rest.met;
+    if (looks) end_look(s);
     left -= steps;
     course.iteration += (course.substep + steps) / substeps;
     course.substep = (course.substep + steps) % substeps;
   }
+  msri_rest_wait(&s->rest, progress.steps);
   return progress;
 }
 

@@ -17,6 +17,11 @@ msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error
 void msri_sweep_free(msri_sweep *sweep);
 size_t msri_sweep_bytes(const msr_plan *plan);
 
+/* Objects that are left out, as steps don't change them; and all are stepped again, as something
+ * else may have. */
+size_t msri_sweep_resting(const msri_sweep *sweep);
+void msri_sweep_wake(msri_sweep *sweep);
+
 /* What became of a run of steps. */
 typedef struct msri_progress {
   uint64_t steps, evaluations, met; /* done; collisions */
