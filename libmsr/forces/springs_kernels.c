@@ -1,6 +1,6 @@
 /* springs_kernels.c - the kernels of springs.h, compiled for several widths: the machine that they
  * run on decides between them, not the one that compiled them. What is left of a run by wide
- * vectors is done by narrower ones. */
+ * vectors is done by narrower ones, or by a part of one. */
 #include "forces/springs.h"
 
 /* Forces where springs begin and where they end. */
