@@ -155,7 +155,7 @@ static void methods_and_forces_keep_bits(void **unused) {
   }
 }
 
-/* More threads than bands, and a mesh that all of them share. */
+/* More than there are parts for, and a mesh that all of them share. */
 static void threads_may_be_many(void **unused) {
   (void)unused;
   const course verlet = {.integrator = &msr_integrator_verlet, .substeps = 1, .iterations = {9}};

@@ -11,6 +11,8 @@
 #include <stdatomic.h>
 #include <string.h>
 
+enum { LEAST = 4 }; /* bands of a part */
+
 static const size_t cache = 640 * 1024; /* bytes of a core's own, what else is needed left out */
 
 /* A part's work. */
@@ -24,8 +26,10 @@ typedef struct wave {
 
 /* ---- Memory */
 
+/* Each part begins a stage with springs of the band above, which another goes over, too: of few
+ * bands that is much, and threads would wait for each other too often. */
 unsigned msri_bands_parts(const msri_bands *bands, unsigned threads) {
-  const size_t most = bands->n / 2;
+  const size_t most = bands->n / LEAST;
   return most < 2 ? 1 : most < threads ? (unsigned)most : threads;
 }
 
