@@ -59,6 +59,7 @@ static const net nets[] = {
     {9000, 90, .offset = {1, 90}, .skips = 30, .differ = true},
     {9000, 90, .offset = {1, 89, 90, 91}, .coincident = true},
     {12000, 12000, .offset = {1}},
+    {5000, 5000, .offset = {1}, .differ = true},
     {12000, 12000, .offset = {1, 2, 3, 5, 7, 8, 9, 13, 1024}},
     {5000, 50, .offset = {4, 6, 1023, 1024, 1025}},
     {12000, 100, .offset = {1, 1500}, .rows = true},

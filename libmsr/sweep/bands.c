@@ -13,7 +13,8 @@
 
 enum { LEAST = 4 }; /* bands of a part */
 
-static const size_t cache = 640 * 1024; /* bytes of a core's own, what else is needed left out */
+static const size_t cache =
+    (size_t)640 * 1024; /* bytes of a core's own, what else is needed left out */
 
 /* A part's work. */
 typedef struct wave {
