@@ -6,7 +6,8 @@
 
 static void add_with(const msri_springs_kernel *kernel, const msr_view *s, double *f) {
   memset(f, 0, 2 * s->n * sizeof *f);
-  kernel->add_runs(s, f, f + s->n);
+  const msri_bundle all = msri_bundle_of_all(s->springs);
+  kernel->add(&all, s->x, s->y, f, f + s->n);
 }
 
 static const msri_springs_kernel *last_kernel(void) {

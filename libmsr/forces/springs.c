@@ -1,9 +1,5 @@
 /* springs.c - linear springs: F_ij = k (|x_ij| - L) x_ij / |x_ij|, U = k (|x_ij| - L)^2 / 2.
- *
- * A run of springs is computed block by block into a buffer, which is then added at one end and
- * taken away at the other: three loops without aliasing, whatever the run's offset, and the same
- * sum in the same order on every machine. These loops are compiled for vectors of several widths;
- * the machine that they run on decides between them, not the one that compiled them. */
+ * Forces are found by the kernels of springs_kernels.c. */
 #include "forces/springs.h"
 
 #include "base/number.h"
@@ -11,81 +7,18 @@
 
 #include <math.h>
 
-/* Forces on the beginnings of `count` springs; stride is 0 or 1. A spring without length divides by
- * infinity: a choice of quotients, not of divisors, would keep gcc from vectorising the loop. */
-MSRI_INLINE void tensions(size_t count, const msri_ends *e, const double *k, const double *L,
-                          size_t stride, double *restrict fx, double *restrict fy) {
-  const double *xi = e->xi, *yi = e->yi, *xj = e->xj, *yj = e->yj;
-  for (size_t s = 0; s < count; s++) {
-    const double dx = xj[s] - xi[s], dy = yj[s] - yi[s];
-    const double l = sqrt(dx * dx + dy * dy);
-    const double f = k[s * stride] * (l - L[s * stride]) / (l > 0 ? l : (double)INFINITY);
-    fx[s] = f * dx;
-    fy[s] = f * dy;
-  }
-}
-
-MSRI_INLINE void add_block(const msr_view *s, const msr_run_of_springs *run, size_t from,
-                           size_t count, double *fx, double *fy) {
-  double bx[MSRI_SPRINGS_BLOCK], by[MSRI_SPRINGS_BLOCK];
-  const size_t i = run->first + from, j = i + run->offset;
-  const msri_ends e = msri_ends_of(s, i, j);
-  if (run->stride)
-    tensions(count, &e, run->k + from, run->L + from, 1, bx, by);
-  else
-    tensions(count, &e, run->k, run->L, 0, bx, by);
-  msri_add_to_ends(count, i, j, bx, by, fx, fy);
-}
-
-MSRI_INLINE void add_runs(const msr_view *s, double *fx, double *fy) {
-  for (size_t r = 0; r < s->springs->n_runs; r++) {
-    const msr_run_of_springs *run = &s->springs->run[r];
-    for (size_t from = 0; from < run->count; from += MSRI_SPRINGS_BLOCK) {
-      const size_t left = run->count - from;
-      add_block(s, run, from, left < MSRI_SPRINGS_BLOCK ? left : MSRI_SPRINGS_BLOCK, fx, fy);
-    }
-  }
-}
-
-/* ---- Kernels */
-
-#if MSRI_WIDE
-MSRI_AVX512 static void add_avx512(const msr_view *s, double *fx, double *fy) {
-  add_runs(s, fx, fy);
-}
-
-MSRI_AVX2 static void add_avx2(const msr_view *s, double *fx, double *fy) { add_runs(s, fx, fy); }
-#endif
-
-static void add_anywhere(const msr_view *s, double *fx, double *fy) { add_runs(s, fx, fy); }
-
-const msri_springs_kernel msri_springs_kernels[] = {
-#if MSRI_WIDE
-    {"AVX-512", msri_has_avx512, add_avx512},
-    {"AVX2", msri_has_avx2, add_avx2},
-#endif
-    {"any", NULL, add_anywhere},
-};
-
-static const msri_springs_kernel *widest(void) {
-  const msri_springs_kernel *kernel = msri_springs_kernels;
-  while (kernel->runs_here && !kernel->runs_here()) kernel++;
-  return kernel;
-}
-
-/* ---- The force */
-
 static void add_anchor(const msr_view *s, const msr_anchor *a, double *fx, double *fy) {
-  double bx, by;
-  const msri_ends e = msri_ends_of_anchor(s, a);
-  tensions(1, &e, &a->k, &a->L, 0, &bx, &by);
-  fx[a->i] += bx;
-  fy[a->i] += by;
+  const double dx = a->x - s->x[a->i], dy = a->y - s->y[a->i];
+  const double l = sqrt(dx * dx + dy * dy);
+  const double f = a->k * (l - a->L) / (l > 0 ? l : (double)INFINITY);
+  fx[a->i] += f * dx;
+  fy[a->i] += f * dy;
 }
 
 static msr_status add(const void *self, void *scratch, const msr_view *s, double *fx, double *fy) {
   (void)self, (void)scratch;
-  widest()->add_runs(s, fx, fy);
+  const msri_bundle all = msri_bundle_of_all(s->springs);
+  msri_springs_widest()->add(&all, s->x, s->y, fx, fy);
   for (size_t a = 0; a < s->springs->n_anchors; a++) add_anchor(s, &s->springs->anchor[a], fx, fy);
   return MSR_OK;
 }

@@ -31,15 +31,31 @@ MSRI_INLINE void msri_add_to_ends(size_t count, size_t i, size_t j, const double
   for (size_t n = 0; n < count; n++) fy[i + n] += by[n];
 }
 
-/* The forces of all runs, compiled for vectors of some width: the same bits by each of them. */
+/* Springs one after the other, of some runs; masses are counted from `base` on. */
+typedef struct msri_bundle {
+  const msr_run_of_springs *run; /* [n_runs]: */
+  size_t n_runs;
+  size_t skip, stop; /* without the first so many springs of the first, and those of the last from
+                        there on */
+  size_t base;
+} msri_bundle;
+
+/* All springs, of all masses. */
+msri_bundle msri_bundle_of_all(const msr_springs *springs);
+
+/* Adds the forces of a bundle, compiled for vectors of some width: the same bits by each of them.
+ */
 typedef struct msri_springs_kernel {
   const char *name;
   bool (*runs_here)(void); /* has this machine got such vectors? NULL: every one has */
-  void (*add_runs)(const msr_view *s, double *fx, double *fy);
+  void (*add)(const msri_bundle *bundle, const double *x, const double *y, double *fx, double *fy);
 } msri_springs_kernel;
 
 /* Widest first; the last runs anywhere. */
 extern const msri_springs_kernel msri_springs_kernels[];
+
+/* The widest that runs here. */
+const msri_springs_kernel *msri_springs_widest(void);
 
 /* msr_force's between. */
 msr_status msri_springs_between(const void *self, void *scratch, const msr_view *s,

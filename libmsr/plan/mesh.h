@@ -5,6 +5,9 @@
 #include "base/base.h"
 #include "scene/scene.h"
 
+/* Springs that a program added are sorted by so many masses where they begin, in turn. */
+enum { MSRI_MESH_GROUP = 1024 };
+
 /* The springs, with the memory that their runs point into. */
 typedef struct msri_mesh {
   msr_springs springs;

@@ -1,11 +1,9 @@
 /* mesh_added.c - the springs that a program added, as runs. They are sorted so that a lattice built
- * by hand makes long runs, too, BAND masses at a time to stay in cache. Stiffnesses and lengths are
- * kept only as far as they differ from those of the spring before. */
+ * by hand makes long runs, too, a group of masses at a time to stay in cache. Stiffnesses and
+ * lengths are kept only as far as they differ from those of the spring before. */
 #include "plan/mesh.h"
 
 #include <stdlib.h>
-
-enum { BAND = 1024 };
 
 #define COMPARE(a, b)                                                                              \
   if ((a) != (b)) return (a) < (b) ? -1 : 1
@@ -19,16 +17,16 @@ static int by_offset_and_first(const void *a, const void *b) {
   return 0;
 }
 
-/* The scene's springs band by band: a counting sort first, so that what remains is small. */
+/* The scene's springs group by group: a counting sort first, so that what remains is small. */
 static msr_status sort(const msr_scene *scene, msri_scene_spring *sorted, msr_error *err) {
-  const size_t bands = msr_scene_masses(scene) / BAND + 1;
-  size_t *end = msri_alloc(bands + 1, sizeof *end, "the springs", err);
+  const size_t groups = msr_scene_masses(scene) / MSRI_MESH_GROUP + 1;
+  size_t *end = msri_alloc(groups + 1, sizeof *end, "the springs", err);
   if (!end) return MSR_ENOMEM;
   const msri_scene_spring *s = scene->spring, *const last = s + scene->n_springs;
-  for (; s < last; s++) end[s->i / BAND + 1]++;
-  for (size_t b = 0; b < bands; b++) end[b + 1] += end[b];
-  for (s = scene->spring; s < last; s++) sorted[end[s->i / BAND]++] = *s;
-  for (size_t b = 0, begin = 0; b < bands; begin = end[b++])
+  for (; s < last; s++) end[s->i / MSRI_MESH_GROUP + 1]++;
+  for (size_t b = 0; b < groups; b++) end[b + 1] += end[b];
+  for (s = scene->spring; s < last; s++) sorted[end[s->i / MSRI_MESH_GROUP]++] = *s;
+  for (size_t b = 0, begin = 0; b < groups; begin = end[b++])
     qsort(sorted + begin, end[b] - begin, sizeof *sorted, by_offset_and_first);
   free(end);
   return MSR_OK;

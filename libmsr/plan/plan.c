@@ -52,7 +52,7 @@ static void count_memory(msr_plan *plan) {
                   (plan->m ? f->masses * sizeof *plan->m : 0) + msri_mesh_bytes(mesh) +
                   (plan->graph ? plan->graph->bytes : 0) + plan->contact.bytes +
                   (plan->discs ? msri_discs_bytes(plan->discs) : 0) +
-                  msri_objects_bytes(&plan->objects);
+                  msri_objects_bytes(&plan->objects) + msri_bands_bytes(&plan->bands);
   f->state_bytes = msri_state_bytes(plan);
 }
 
@@ -77,6 +77,12 @@ static bool looks_at_start(const msr_scene *scene) {
   return scene->n_masses > 0 || scene->diameter > 0;
 }
 
+static msr_status prepare_sweeps(msr_plan *plan, msr_error *err) {
+  if (plan->mesh.n_added > 0)
+    return msri_bands_create(plan->figures.masses, &plan->mesh.springs, &plan->bands, err);
+  return msri_objects_create(plan->grid->picture, plan->neighbours, &plan->objects, err);
+}
+
 static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan_options *options,
                           msr_error *err) {
   share_picture(plan, scene);
@@ -96,8 +102,7 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan
       places > 0 ? msri_plan_view(plan, 0, q, q + 2 * n) : msri_plan_view(plan, 0, NULL, NULL);
   status = decide(plan, scene, &start, options, err);
   free(q);
-  if (status == MSR_OK && msri_plan_sweeps(plan))
-    status = msri_objects_create(plan->grid->picture, plan->neighbours, &plan->objects, err);
+  if (status == MSR_OK && msri_plan_sweeps(plan)) status = prepare_sweeps(plan, err);
   if (status != MSR_OK) return status;
   msri_plan_complete_effects(plan, &(msri_asked){options->integrator, options->substeps > 0});
   count_memory(plan);
@@ -157,6 +162,7 @@ void msr_plan_free(msr_plan *plan) {
   msri_discs_free(plan->discs);
   free(plan->graph);
   msri_objects_clear(&plan->objects);
+  msri_bands_clear(&plan->bands);
   msri_mesh_clear(&plan->mesh);
   msri_notes_clear(&plan->notes);
   msri_grid_free(plan->grid);

@@ -6,6 +6,7 @@
 #include "base/notes.h"
 #include "contacts/contact.h"
 #include "contacts/discs.h"
+#include "plan/bands.h"
 #include "plan/mesh.h"
 #include "plan/objects.h"
 #include "scene/scene.h"
@@ -68,7 +69,8 @@ struct msr_plan {
   bool middle;          /* a force without between() acts in the middle of a step: likewise */
   unsigned threads;     /* of a state */
   int neighbours;       /* of a mass of the picture: 4 or 8 */
-  msri_objects objects; /* of the picture, if states sweep */
+  msri_objects objects; /* of the picture, if states sweep; */
+  msri_bands bands;     /* or of the mesh that a program built */
   msri_graph *graph;    /* of the springs, if the integrator is implicit */
   msri_contact contact; /* drift NULL: nothing stands in the way */
   msri_discs *discs;    /* NULL: masses don't collide with each other */

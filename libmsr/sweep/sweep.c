@@ -1,8 +1,10 @@
 /* sweep.c - passes of several stages over all objects: a small one goes through all stages of a
- * pass by itself, by one thread; large ones go row by row, by all threads together. */
+ * pass by itself, by one thread; large ones go row by row, by all threads together, as does a mesh
+ * that a program built, band by band. */
 #include "sweep/sweep.h"
 
 #include "integrators/splitting.h"
+#include "sweep/bands.h"
 #include "sweep/patch.h"
 #include "sweep/rest.h"
 #include "sweep/rows.h"
@@ -63,12 +65,22 @@ static bool are_simple(const msr_plan *plan) {
   return uniform <= 1 && relax <= 1;
 }
 
-bool msri_plan_sweeps(const msr_plan *plan) {
-  const msr_plan_figures *f = &plan->figures;
+/* Nothing but a picture? */
+static bool is_picture(const msr_plan *plan) {
   const bool meets = msri_plan_meets(plan);
   if (meets && (plan->discs || msri_plan_bounces(plan))) return false;
-  return msri_splitting_drifts(f->integrator) > 0 && !f->leaps && f->masses == plan->n_picture &&
-         plan->mesh.n_added == 0 && f->anchors == 0 && are_simple(plan);
+  return plan->figures.masses == plan->n_picture && plan->mesh.n_added == 0;
+}
+
+/* Only springs that a program added, with nothing in their way? */
+static bool is_mesh(const msr_plan *plan) {
+  return plan->mesh.n_added == plan->mesh.springs.n && !plan->m && !msri_plan_meets(plan);
+}
+
+bool msri_plan_sweeps(const msr_plan *plan) {
+  const msr_plan_figures *f = &plan->figures;
+  return msri_splitting_drifts(f->integrator) > 0 && !f->leaps && f->anchors == 0 &&
+         are_simple(plan) && (is_picture(plan) || is_mesh(plan));
 }
 
 /* ---- Who does what */
@@ -112,7 +124,21 @@ static void widen(size_t *size, size_t least) {
   if (*size < least) *size = least;
 }
 
+static bool has_bands(const msr_plan *plan) { return plan->bands.n > 0; }
+
+static unsigned threads_for(const msr_plan *plan) {
+  return has_bands(plan) ? msri_bands_parts(&plan->bands, plan->threads) : plan->threads;
+}
+
+static room room_for_bands(const msr_plan *plan) {
+  const unsigned parts = threads_for(plan);
+  const int stages = msri_bands_stages(&plan->bands, parts);
+  const size_t size = msri_bands_size(&plan->bands, parts, stages);
+  return (room){.depth = stages, .parts = msri_round_up(size, LINE / sizeof(double))};
+}
+
 static room room_for(const msr_plan *plan) {
+  if (has_bands(plan)) return room_for_bands(plan);
   const msri_objects *o = &plan->objects;
   const int ways = ways_of(plan);
   room r = {.depth = MSRI_MOST_STAGES};
@@ -141,7 +167,8 @@ static size_t bytes_of(const msr_plan *plan, const room *r) {
   const size_t thread = sizeof(worker) + doubles_of(r) * sizeof(double) + sizeof(double *) +
                         2 * sizeof(_Atomic unsigned);
   const size_t rest = plan->objects.n * (sizeof(bool) + 1);
-  return sizeof(msri_sweep) + plan->threads * thread + r->shares * sizeof(double) + rest + 2 * LINE;
+  return sizeof(msri_sweep) + threads_for(plan) * thread + r->shares * sizeof(double) + rest +
+         2 * LINE;
 }
 
 size_t msri_sweep_bytes(const msr_plan *plan) {
@@ -183,7 +210,7 @@ msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error
   const room r = room_for(plan);
   msri_sweep *made = msri_alloc(1, bytes_of(plan, &r), "a state", err);
   if (!made) return MSR_ENOMEM;
-  made->threads = plan->threads;
+  made->threads = threads_for(plan);
   made->depth = r.depth;
   made->alone = plan->objects.n <= plan->threads;
   made->pass = (msri_pass){.plan = plan,
@@ -196,7 +223,7 @@ msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error
   made->rests = msri_rest_is_known(plan) &&
                 msri_course_stages(&(msri_course){.plan = plan, .steps = 1}) <= (uint64_t)r.depth;
   const msr_status status =
-      plan->threads > 1 ? msri_team_create(plan->threads, &made->team, err) : MSR_OK;
+      made->threads > 1 ? msri_team_create(made->threads, &made->team, err) : MSR_OK;
   if (status == MSR_OK)
     *sweep = made;
   else
@@ -265,6 +292,20 @@ static double look_at(msri_sweep *s, size_t n, unsigned thread) {
   return fastest;
 }
 
+/* A thread's part of the mesh. */
+static double run_mesh(msri_sweep *s, unsigned thread, unsigned *turn) {
+  const size_t bands = s->pass.plan->bands.n, parts = s->threads;
+  size_t begin[MSRI_MOST_THREADS + 1];
+  for (size_t p = 0; p <= parts; p++) begin[p] = bands * p / parts;
+  const msri_part part = {.number = thread,
+                          .parts = parts,
+                          .begin = begin,
+                          .opened = s->opened,
+                          .turn = ++*turn,
+                          .memory = s->parts};
+  return msri_bands_run(&s->pass, &part);
+}
+
 static void work(void *self, unsigned thread) {
   msri_sweep *s = self;
   const msri_objects *objects = &s->pass.plan->objects;
@@ -285,6 +326,7 @@ static void work(void *self, unsigned thread) {
       fastest = msri_patch_run(&s->pass, object, s->filled, s->kept, me->patch, &me->tally, NULL);
     me->fastest = msri_worse(fastest, me->fastest);
   }
+  if (has_bands(s->pass.plan)) me->fastest = run_mesh(s, thread, &turn);
   me->turn = turn;
 }
 
