@@ -804,7 +804,8 @@ MSR_API uint64_t msr_state_contacts(const msr_state *state);
 MSR_API size_t msr_state_resting(const msr_state *state);
 
 /* Steps so far, those that an adaptive method chose and those that ended at an impact or were tried
- * in search of it included, and evaluations of the acceleration. All but `careful` begin at 0 after
+ * in search of it included, and evaluations of the acceleration, but for those that a call only
+ * repeats, row by row, to go on where another ended. All but `careful` begin at 0 after
  * msr_state_load. */
 typedef struct msr_work {
   uint64_t steps, evaluations;

@@ -148,7 +148,8 @@ static msri_progress sweep_timed(msr_state *state, const msri_swept *swept, msri
   const size_t integrator = state->plan->row.integrator;
   msri_meter_turn(m, integrator);
   const double before = m->seconds ? m->seconds[integrator] : 0;
-  const msri_progress progress = msri_sweep_run(state->sweep, swept, way, most);
+  const msri_progress progress = msri_sweep_run(state->sweep, swept, way, most, state->fresh);
+  state->fresh = progress.known;
   msri_meter_turn(m, integrator);
   if (m->seconds) msri_sweep_split(state->sweep, m->seconds[integrator] - before, m->seconds);
   return progress;

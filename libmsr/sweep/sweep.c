@@ -368,9 +368,11 @@ static void end_early(msri_course *course, uint64_t k) {
 /* Takes a course or, once a mass moves faster than it may, a part of it. When speeds are looked at
  * doesn't depend on how long passes are, and so not on threads. */
 static void run_course(msri_sweep *s, msri_course *course, double fastest, msri_progress *p) {
+  const uint64_t drifts = (uint64_t)msri_splitting_drifts(course->plan->figures.integrator);
   double speed = 0;
   for (uint64_t k = 0, end = msri_course_stages(course); k < end;) {
     set_stages(s, course, k, end, p);
+    if (k == 0 && p->known && s->stage[0].forces) p->evaluations--;
     k += (uint64_t)s->pass.stages;
     s->kept = s->alone && k < end;
     if (s->shares.memory) msri_shares_measure(&s->shares, &s->pass);
@@ -383,6 +385,7 @@ static void run_course(msri_sweep *s, msri_course *course, double fastest, msri_
     end = msri_course_stages(course);
   }
   p->steps += course->steps;
+  p->known = msri_course_stages(course) > course->steps * drifts;
 }
 
 /* The step that objects were looked at in is done. */
@@ -394,8 +397,8 @@ static void end_look(msri_sweep *s) {
 
 /* Debts are paid within a pass: there, courses are as long as that. A look takes one step. */
 msri_progress msri_sweep_run(msri_sweep *s, const msri_swept *state, msri_course course,
-                             double fastest) {
-  msri_progress progress = {0};
+                             double fastest, bool known) {
+  msri_progress progress = {.known = known};
   const uint64_t most = s->pass.meets ? (uint64_t)s->depth - 1 : course.steps;
   const uint64_t substeps = course.plan->figures.substeps;
   s->pass.state = state;

@@ -25,12 +25,14 @@ void msri_sweep_wake(msri_sweep *sweep);
 /* What became of a run of steps. */
 typedef struct msri_progress {
   uint64_t steps, evaluations, met; /* done; collisions */
+  bool known;                       /* it ended with an evaluation, which the next begins with */
   bool fast;                        /* a mass moved faster than it should: steps ended early */
 } msri_progress;
 
-/* Takes the steps of a course or, once a mass moves faster than `fastest` along an axis, fewer. */
+/* Takes the steps of a course or, once a mass moves faster than `fastest` along an axis, fewer.
+ * `known`: the evaluation that it begins with has been counted. */
 msri_progress msri_sweep_run(msri_sweep *sweep, const msri_swept *state, msri_course course,
-                             double fastest);
+                             double fastest, bool known);
 
 /* Of a plan that is timed: moves what such a run spent [s] from the integrator's seconds [effects]
  * to those of all effects, by what each is measured to take. */
