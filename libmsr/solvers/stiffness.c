@@ -75,12 +75,12 @@ msri_stiffness msri_stiffness_place(const msri_graph *graph, const msr_view *s, 
   a.weight = take(&rest, masses);
   double **vector[VECTORS] = {&a.x, &a.residual, &a.direction, &a.image, &a.z, &a.product};
   for (size_t v = 0; v < VECTORS; v++) *vector[v] = take(&rest, 2 * n);
-  a.lower = (float *)rest;
-  a.place = (uint32_t *)(a.lower + 4 * graph->pairs);
+  a.lower = (void *)rest;
+  a.place = (void *)(a.lower + 4 * graph->pairs);
   for (size_t i = 0; i < masses; i++) a.m[i] = s->m[s->m_stride ? graph->order[i] : 0];
   for (size_t i = 0; i < masses; i++) a.weight[i] = 1 / (a.m[i] * a.m[i]);
   a.least = -spare(s, a.x);
-  find_anchors(&a, (uint32_t *)a.x);
+  find_anchors(&a, (void *)a.x);
   return a;
 }
 
