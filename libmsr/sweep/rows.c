@@ -11,7 +11,7 @@
 
 enum { ROWS = MSRI_MOST_STAGES + 3 }; /* of the ring: those of the wave, and one on each side */
 
-static const size_t cache = 640 * 1024; /* bytes of a core's own, what else is needed left out */
+static const size_t cache = 1000 * 1024; /* bytes of a core's own, what else is needed left out */
 static const size_t none = SIZE_MAX;
 
 /* Neighbouring pieces of a row with few cells between them: columns from .. to-1. */

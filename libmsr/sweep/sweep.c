@@ -15,11 +15,11 @@
 #include <string.h>
 
 enum {
-  PATCH_CELLS = 12288, /* of a small object: they fit into a core's cache */
-  SHARED_MASSES = 512, /* of an object that is worth sharing among threads */
-  LEAST_STAGES = 4,    /* of a pass: fewer would have threads wait for each other too often */
-  LOOK = 64,           /* stages between two looks at speeds */
-  LINE = 64            /* of the cache, and the widest vector */
+  PATCH_CELLS = 12288,  /* of a small object: they fit into a core's cache */
+  SHARED_MASSES = 8192, /* of an object that is worth sharing among threads */
+  LEAST_STAGES = 4,     /* of a pass: fewer would have threads wait for each other too often */
+  LOOK = 64,            /* stages between two looks at speeds */
+  LINE = 64             /* of the cache, and the widest vector */
 };
 
 /* One thread's; on lines of the cache of its own. */
@@ -330,10 +330,15 @@ static void work(void *self, unsigned thread) {
   me->turn = turn;
 }
 
+/* Is there nothing but one small object? Then the others wouldn't have anything to do. */
+static bool is_lone(const msr_plan *plan) {
+  return plan->objects.n == 1 && is_small(plan, plan->objects.object);
+}
+
 /* Takes the stages that are set. Returns the largest speed along an axis. */
 static double run_pass(msri_sweep *s, uint64_t *met) {
   double fastest = 0;
-  if (s->team)
+  if (s->team && !is_lone(s->pass.plan))
     msri_team_run(s->team, work, s);
   else
     work(s, 0);
