@@ -39,6 +39,8 @@ static inline size_t msri_masses_that_differ(const msr_view *s) {
 /* The least multiple of `unit` that isn't below n. */
 static inline size_t msri_round_up(size_t n, size_t unit) { return (n + unit - 1) / unit * unit; }
 
+static inline size_t msri_lesser(size_t a, size_t b) { return a < b ? a : b; }
+
 /* The larger, but what is no number before any. */
 static inline double msri_worse(double a, double b) { return a >= b || a != a ? a : b; }
 

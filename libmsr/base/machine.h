@@ -18,6 +18,9 @@
 /* In a loop that waits for another thread. */
 static inline void msri_pause(void) { __builtin_ia32_pause(); }
 
+/* Soon to be read and written. */
+static inline void msri_prefetch(const void *at) { __builtin_prefetch(at, 1); }
+
 static inline bool msri_has_avx2(void) { return __builtin_cpu_supports("avx2"); }
 static inline bool msri_has_avx512(void) { return __builtin_cpu_supports("avx512f"); }
 
@@ -27,6 +30,7 @@ static inline bool msri_has_avx512(void) { return __builtin_cpu_supports("avx512
 #define MSRI_INLINE static inline
 
 static inline void msri_pause(void) {}
+static inline void msri_prefetch(const void *at) { (void)at; }
 
 #endif
 

@@ -14,19 +14,29 @@ typedef struct msri_pull {
   double *x, *y;
 } msri_pull;
 
-enum { MSRI_LANES = 8 }; /* of the widest vector */
+/* Cells side by side that are worked on together: as many as the widest vector has lanes. */
+enum { MSRI_LANES = 8 };
 
-/* n cells of a row, or of rows one after the other. A cell without a mass, or at the
- * end of a row, has k 0 wherever there's no spring: whatever stands in its place is harmless. Rows
- * that follow each other are longer than MSRI_LANES. Forces from above may be where those to below
- * go, but for those of MSRI_BELOW_RIGHT. */
+/* Bit by bit, from the first cell on: where there is a mass, where springs begin, and where those
+ * from above end. */
+typedef struct msri_block {
+  uint32_t cell; /* the first: a multiple of MSRI_LANES */
+  uint8_t mass, tie[MSRI_WAYS], tied[MSRI_WAYS];
+} msri_block;
+
+/* n cells of a row, or of rows one after the other. Those without a mass are all 0, and stay so, if
+ * they are in a block with others; elsewhere, and around the cells, what is there is harmless. Rows
+ * that follow each other are longer than MSRI_LANES. Forces to below are left in `pull`; those from
+ * above are `back` after the place where those to below go, and may be overwritten, but for those
+ * of MSRI_BELOW_RIGHT. */
 typedef struct msri_cells {
-  size_t n;
+  size_t n;                        /* a multiple of MSRI_LANES */
   double *x, *y, *vx, *vy;         /* [n]; of x and y the cell to the right of the last, too */
   const double *below_x, *below_y; /* [n]: with diagonals, from -1 to n */
-  const double *k[MSRI_WAYS];      /* [n] [kg/s^2] */
-  msri_pull above[MSRI_WAYS];      /* [n]: of the springs that end at a cell; */
-  msri_pull below[MSRI_WAYS];      /* [n] and of those that begin there: these are written */
+  const msri_block *block;         /* [blocks]: those that hold masses, from the left */
+  size_t blocks;
+  msri_pull pull[MSRI_WAYS]; /* [n] */
+  ptrdiff_t back[MSRI_WAYS];
 } msri_cells;
 
 /* What may act beside the springs: a weight, air between the kicks. */
@@ -34,7 +44,7 @@ enum { MSRI_WITH_WEIGHT = 1, MSRI_WITH_AIR = 2, MSRI_BESIDES = 4 };
 
 /* What a stage of a step does: forces, kicks, drift (see integrators/splitting.h). */
 typedef struct msri_motion {
-  double L[2];               /* of springs along a side, along a diagonal */
+  double k, L[2];            /* of springs: along a side, along a diagonal */
   double w;                  /* 1 / mass */
   double weight[2];          /* a force that is the same on each mass */
   double kick[2], drift;     /* times h */
@@ -49,7 +59,7 @@ typedef struct msri_lattice_kernel {
     /* Forces, then kick, kick, drift; by what acts beside the springs. Returns the largest
      * velocity along an axis; NaN if one is. */
     double (*advance[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
-    /* The same without the drift; accelerations go to ax, ay [n]. */
+    /* The same without the drift; accelerations go to ax, ay [n], those of the blocks. */
     double (*kick[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion, double *ax,
                                  double *ay);
     /* Only the forces of the springs to the cells below. */

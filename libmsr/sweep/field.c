@@ -6,20 +6,48 @@
 
 #include <string.h>
 
-size_t msri_field_size(int ways, size_t stride) { return (size_t)(4 + ways) * stride; }
+/* ---- Memory: x, y, vx, vy, each with what is around it; blocks and how many there are */
 
-msri_field msri_field_place(int ways, size_t stride, double *memory) {
-  msri_field f = {stride, memory, memory + stride, memory + 2 * stride, memory + 3 * stride, {0}};
-  for (int way = 0; way < ways; way++) f.k[way] = memory + (size_t)(4 + way) * stride;
-  return f;
+static size_t blocks_size(size_t n) {
+  const size_t bytes = n / MSRI_LANES * sizeof(msri_block) + sizeof(size_t);
+  return msri_round_up(bytes, MSRI_MARGIN * sizeof(double)) / sizeof(double);
+}
+
+size_t msri_field_size(size_t n, size_t around) { return 4 * (n + 2 * around) + blocks_size(n); }
+
+msri_field msri_field_place(size_t n, size_t around, double *memory) {
+  const size_t stride = n + 2 * around;
+  double *x = memory + around;
+  msri_block *block = (void *)(memory + 4 * stride);
+  return (msri_field){.n = n,
+                      .x = x,
+                      .y = x + stride,
+                      .vx = x + 2 * stride,
+                      .vy = x + 3 * stride,
+                      .block = block,
+                      .blocks = (void *)(block + n / MSRI_LANES)};
+}
+
+msri_cells msri_field_cells(const msri_field *f) {
+  return (msri_cells){.n = f->n,
+                      .x = f->x,
+                      .y = f->y,
+                      .vx = f->vx,
+                      .vy = f->vy,
+                      .block = f->block,
+                      .blocks = *f->blocks};
 }
 
 /* ---- Masses */
 
-static void clear(double *to, size_t from, size_t n) { memset(to + from, 0, n * sizeof *to); }
+enum { LONG = 64 };
 
 /* Most pieces are short: calls would take longer than copies. */
 MSRI_INLINE void copy(double *to, const double *from, size_t n) {
+  if (n >= LONG) {
+    memcpy(to, from, n * sizeof *to);
+    return;
+  }
   for (; n >= 8; n -= 8, to += 8, from += 8) memcpy(to, from, 8 * sizeof *to);
   for (size_t few = 4; few > 0; few /= 2) {
     if (n < few) continue;
@@ -29,9 +57,7 @@ MSRI_INLINE void copy(double *to, const double *from, size_t n) {
 }
 
 void msri_field_fill(const msri_field *f, const msri_objects *objects, size_t row,
-                     const msri_swept *from, size_t at, size_t width) {
-  clear(f->x, at, width), clear(f->y, at, width);
-  clear(f->vx, at, width), clear(f->vy, at, width);
+                     const msri_swept *from, size_t at) {
   for (size_t s = objects->row[row]; s < objects->row[row + 1]; s++) {
     const msri_piece *piece = &objects->piece[s];
     const size_t begin = at + piece->column, n = piece->count;
@@ -72,27 +98,41 @@ bool msri_field_is(const msri_field *f, const msri_objects *objects, size_t row,
 
 /* ---- Springs */
 
-void msri_field_mark(double *marks, const msri_objects *objects, size_t row, double k,
-                     size_t width) {
-  memset(marks - 1, 0, (width + 2) * sizeof *marks);
+size_t msri_marks_bytes(size_t n, size_t around) { return n / 8 + 2 * (around / 8 + 1); }
+
+void msri_marks_set(const msri_marks *marks, const msri_objects *objects, size_t row, size_t at) {
   for (size_t s = objects->row[row]; s < objects->row[row + 1]; s++) {
-    const msri_piece *piece = &objects->piece[s];
-    for (size_t c = 0; c < piece->count; c++) marks[piece->column + c] = k;
+    size_t bit = marks->first + at + objects->piece[s].column, left = objects->piece[s].count;
+    for (size_t n; left > 0; bit += n, left -= n) {
+      n = msri_lesser(left, 8 - bit % 8);
+      marks->bits[bit / 8] |= (uint8_t)(((1U << n) - 1) << bit % 8);
+    }
   }
 }
 
-/* k where both have a mass. */
-static void tie(size_t n, const double *restrict a, const double *restrict b, double *restrict k) {
-  for (size_t c = 0; c < n; c++) k[c] = a[c] < b[c] ? a[c] : b[c];
+/* Those of 8 cells, from some bit on. */
+static unsigned eight(const uint8_t *bits, size_t bit) {
+  return ((unsigned)bits[bit / 8] | (unsigned)bits[bit / 8 + 1] << 8) >> bit % 8;
 }
 
-void msri_field_tie(const msri_field *f, const double *marks, const double *below, int ways,
-                    size_t at, size_t width) {
-  tie(width, marks, marks + 1, f->k[MSRI_RIGHT] + at);
-  tie(width, marks, below, f->k[MSRI_BELOW] + at);
-  if (ways < MSRI_WAYS) return;
-  tie(width, marks, below - 1, f->k[MSRI_BELOW_LEFT] + at);
-  tie(width, marks, below + 1, f->k[MSRI_BELOW_RIGHT] + at);
+void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
+                    const msri_marks *above, const msri_marks *below) {
+  static const int to[] = {[MSRI_BELOW_LEFT] = -1, [MSRI_BELOW_RIGHT] = 1};
+  size_t n = 0;
+  for (size_t c = 0; c < f->n; c += MSRI_LANES) {
+    const size_t at = masses->first + c, up = above->first + c, down = below->first + c;
+    const unsigned mass = eight(masses->bits, at);
+    if (mass % 256 == 0) continue;
+    msri_block *b = &f->block[n++];
+    b->cell = (uint32_t)c;
+    b->mass = (uint8_t)mass;
+    b->tie[MSRI_RIGHT] = (uint8_t)(mass & eight(masses->bits, at + 1));
+    for (int way = MSRI_BELOW; way < ways; way++) {
+      b->tie[way] = (uint8_t)(mass & eight(below->bits, down + (size_t)to[way]));
+      b->tied[way] = (uint8_t)(mass & eight(above->bits, up - (size_t)to[way]));
+    }
+  }
+  *f->blocks = n;
 }
 
 /* ---- Steps */

@@ -17,21 +17,24 @@ typedef struct msri_pass {
   bool meets;  /* something may be in the way */
 } msri_pass;
 
-/* Dense arrays, each as long as `stride`; what is around the cells of use is there to be read. */
+enum { MSRI_MARGIN = 8 }; /* cells: of a line of the cache */
+
+/* n cells, in whole blocks, and some around them. */
 typedef struct msri_field {
-  size_t stride;
-  double *x, *y, *vx, *vy, *k[MSRI_WAYS];
+  size_t n;
+  double *x, *y, *vx, *vy; /* [n] */
+  msri_block *block;       /* [blocks]: those that hold masses */
+  size_t *blocks;
 } msri_field;
 
-enum { MSRI_MARGIN = 8 }; /* cells around those of use: of a line of the cache */
+/* Doubles of a field with `around` cells, a multiple of MSRI_MARGIN, on each side; carves it from
+ * memory. */
+size_t msri_field_size(size_t n, size_t around);
+msri_field msri_field_place(size_t n, size_t around, double *memory);
 
-/* Doubles of a field; carves it from memory. */
-size_t msri_field_size(int ways, size_t stride);
-msri_field msri_field_place(int ways, size_t stride, double *memory);
-
-/* Copies a row's masses to cells `at` + column, and back; 0 in all other of its `width` cells. */
+/* Copies a row's masses to cells `at` + column, and back. */
 void msri_field_fill(const msri_field *f, const msri_objects *objects, size_t row,
-                     const msri_swept *from, size_t at, size_t width);
+                     const msri_swept *from, size_t at);
 void msri_field_empty(const msri_field *f, const msri_objects *objects, size_t row,
                       const msri_swept *to, size_t at);
 
@@ -39,14 +42,25 @@ void msri_field_empty(const msri_field *f, const msri_objects *objects, size_t r
 bool msri_field_is(const msri_field *f, const msri_objects *objects, size_t row,
                    const msri_swept *state, size_t at);
 
-/* k where a row has a mass, in marks[width]; 0 elsewhere, from -1 to width. */
-void msri_field_mark(double *marks, const msri_objects *objects, size_t row, double k,
-                     size_t width);
+/* Where there are masses: a bit for each cell, from bit `first` on, and for some around them. */
+typedef struct msri_marks {
+  uint8_t *bits;
+  size_t first; /* a multiple of 8 but for cells above and below others */
+} msri_marks;
 
-/* Stiffness of the springs from a row's cells `at` + column, by its marks and those of the row
- * below. */
-void msri_field_tie(const msri_field *f, const double *marks, const double *below, int ways,
-                    size_t at, size_t width);
+/* Bytes of the marks of n cells and `around` on each side; a multiple of 8 and more than there are
+ * to be read. */
+size_t msri_marks_bytes(size_t n, size_t around);
+
+/* Marks the masses of a row, at cells `at` + column. */
+void msri_marks_set(const msri_marks *marks, const msri_objects *objects, size_t row, size_t at);
+
+/* Finds the blocks of a field, by the marks of its cells and of those above and below them. */
+void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
+                    const msri_marks *above, const msri_marks *below);
+
+/* The cells of a field, without those below them and what they pull. */
+msri_cells msri_field_cells(const msri_field *f);
 
 /* Does a stage to cells. Returns the largest velocity along an axis; 0 if they only drift. */
 double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells);

@@ -104,6 +104,7 @@ msri_stage msri_course_stage(const msri_course *c, uint64_t k, const msri_swept 
   const uint64_t drifts = (uint64_t)drifts_of(c);
   msri_stage stage = {0};
   msri_motion *m = &stage.motion;
+  m->k = c->plan->mesh.lattice_k;
   for (int side = 0; side < 2; side++) m->L[side] = c->plan->mesh.lattice_L[side];
   m->w = 1 / c->plan->uniform_mass;
   if (at.n > 0) set_kicks(&at, damped, h, m->kick);

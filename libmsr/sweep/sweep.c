@@ -350,12 +350,15 @@ static double run_pass(msri_sweep *s, uint64_t *met) {
   return fastest;
 }
 
-/* The stages of a pass from k on; none goes beyond the next look at speeds. */
+/* The stages of a pass from k on; none goes beyond the next look at speeds, and those until then
+ * are alike. */
 static void set_stages(msri_sweep *s, const msri_course *course, uint64_t k, uint64_t end,
                        msri_progress *p) {
-  const uint64_t look = k + LOOK - k % LOOK, last = look < end ? look : end;
+  const uint64_t look = k + LOOK - k % LOOK, left = (look < end ? look : end) - k;
+  const uint64_t passes = (left + (uint64_t)s->depth - 1) / (uint64_t)s->depth;
+  const int most = (int)((left + passes - 1) / passes);
   int n = 0;
-  for (; n < s->depth && k + (uint64_t)n < last; n++) {
+  for (; n < most; n++) {
     s->stage[n] = msri_course_stage(course, k + (uint64_t)n, s->pass.state);
     p->evaluations += s->stage[n].forces;
   }
