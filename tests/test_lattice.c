@@ -192,7 +192,10 @@ static void check_advance(const msri_lattice_kernel *kernel, const row *from, co
   row due = *from, is = *from;
   const msri_cells at = cells_of(&is);
   const double fastest = advance_cells(&due, m, ways, besides);
-  const double told = kernel->of[ways == MSRI_WAYS].advance[besides](&at, m);
+  const double told = kernel->of[ways == MSRI_WAYS].advance[1][besides](&at, m);
+  assert_rows(kernel, "advance", ways, besides, &is, &due);
+  is = *from;
+  assert_true(kernel->of[ways == MSRI_WAYS].advance[0][besides](&at, m) == 0);
   assert_rows(kernel, "advance", ways, besides, &is, &due);
   if (memcmp(&told, &fastest, sizeof told) != 0)
     fail_msg("%s: fastest is %g, not %g, %zu cells", kernel->name, told, fastest, from->n);
@@ -317,7 +320,7 @@ static void forces_may_take_each_others_place(void **state) {
               due.above[way][axis][c] = r.below[way][axis][c + (size_t)shift[way]];
         }
         advance_cells(&due, &m, ways, 0);
-        kernel->of[ways == MSRI_WAYS].advance[0](&at, &m);
+        kernel->of[ways == MSRI_WAYS].advance[0][0](&at, &m);
         assert_memory_equal(is.vx, due.vx, sizeof is.vx);
         assert_memory_equal(is.vy, due.vy, sizeof is.vy);
         assert_memory_equal(is.below, due.below, sizeof is.below);
@@ -343,7 +346,7 @@ static void the_fastest_is_found(void **state) {
     for (size_t k = 0; (kernel = kernel_here(k)); k++) {
       row is = r;
       const msri_cells cells = cells_of(&is);
-      assert_true(isnan(kernel->of[0].advance[1](&cells, &m)));
+      assert_true(isnan(kernel->of[0].advance[1][1](&cells, &m)));
     }
   }
 }

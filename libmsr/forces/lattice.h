@@ -57,9 +57,10 @@ typedef struct msri_lattice_kernel {
   bool (*runs_here)(void); /* has this machine got such vectors? NULL: every one has */
   struct {
     /* Forces, then kick, kick, drift; by what acts beside the springs. Returns the largest
-     * velocity along an axis; NaN if one is. */
-    double (*advance[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
-    /* The same without the drift; accelerations go to ax, ay [n], those of the blocks. */
+     * velocity along an axis, NaN if one is, if it's asked for; else 0. */
+    double (*advance[2][MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
+    /* The same without the drift, and asked; accelerations go to ax, ay [n], those of the blocks.
+     */
     double (*kick[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion, double *ax,
                                  double *ay);
     /* Only the forces of the springs to the cells below. */

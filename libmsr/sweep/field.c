@@ -139,7 +139,8 @@ void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
 
 double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells) {
   const int eight = pass->ways > MSRI_BELOW + 1;
-  if (stage->forces) return pass->kernel->of[eight].advance[pass->besides](cells, &stage->motion);
+  if (stage->forces)
+    return pass->kernel->of[eight].advance[stage->tells][pass->besides](cells, &stage->motion);
   msri_add_scaled(cells->n, stage->motion.drift, cells->vx, cells->x);
   msri_add_scaled(cells->n, stage->motion.drift, cells->vy, cells->y);
   return 0;

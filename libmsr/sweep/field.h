@@ -62,7 +62,7 @@ void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
 /* The cells of a field, without those below them and what they pull. */
 msri_cells msri_field_cells(const msri_field *f);
 
-/* Does a stage to cells. Returns the largest velocity along an axis; 0 if they only drift. */
+/* Does a stage to cells. Returns the largest velocity along an axis, if the stage tells; else 0. */
 double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells);
 
 #endif

@@ -70,7 +70,7 @@ static void run(const subject *s, int which) {
   else if (s->pass->meets)
     kernel->of[eight].kick[which](&s->cells, &s->motion, s->a, s->a + s->cells.n);
   else
-    kernel->of[eight].advance[which](&s->cells, &s->motion);
+    kernel->of[eight].advance[0][which](&s->cells, &s->motion);
 }
 
 /* Of once all cells. */

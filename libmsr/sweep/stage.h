@@ -16,6 +16,7 @@ typedef struct msri_swept {
 
 typedef struct msri_stage {
   bool forces; /* else it only drifts */
+  bool tells;  /* how fast masses are */
   msri_motion motion;
 } msri_stage;
 

@@ -363,6 +363,7 @@ static void set_stages(msri_sweep *s, const msri_course *course, uint64_t k, uin
     p->evaluations += s->stage[n].forces;
   }
   s->pass.stages = n;
+  s->stage[n - 1].tells = (uint64_t)n == left;
 }
 
 /* The step that is under way after k stages is the last, or the next one if none is: a last pass
