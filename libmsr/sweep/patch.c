@@ -5,40 +5,90 @@
 
 #include <string.h>
 
+enum {
+  NARROW = 64,      /* cells of a row that others may follow in the same */
+  MOST_CELLS = 2048 /* of more than one object */
+};
+
+/* ---- Groups */
+
 /* Cells of a row and the one after it: no vector holds two neighbours in a column. */
-static size_t length(const msri_object *object) {
-  return object->width < MSRI_LANES ? MSRI_LANES + 1 : object->width + 1;
+static size_t length(const msri_group *group) {
+  return group->width < MSRI_LANES ? MSRI_LANES + 1 : group->width + 1;
 }
 
-size_t msri_patch_cells(const msri_object *object) {
-  return msri_round_up(object->rows * length(object), MSRI_LANES);
+static bool takes(const msri_group *group, const msri_object *object) {
+  const size_t rows = object->rows > group->rows ? object->rows : group->rows;
+  const bool alike = 2 * object->rows >= rows && 2 * group->rows >= rows;
+  return alike && group->width < NARROW && object->width < NARROW &&
+         rows * (group->width + object->width + 2) <= MOST_CELLS;
+}
+
+msri_group msri_group_of(const msri_object *object, size_t most) {
+  msri_group g = {object, 1, object->rows, object->width, object->masses};
+  for (; g.n < most && takes(&g, &object[g.n]); g.n++) {
+    const msri_object *next = &object[g.n];
+    if (g.rows < next->rows) g.rows = next->rows;
+    g.width += 1 + next->width;
+    g.masses += next->masses;
+  }
+  return g;
+}
+
+/* ---- Memory */
+
+size_t msri_patch_cells(const msri_group *group) {
+  return msri_round_up(group->rows * length(group), MSRI_LANES);
 }
 
 /* Cells around those of a patch: for neighbours of the first and the last row that there aren't. */
-static size_t around(const msri_object *object) {
-  return msri_round_up(length(object) + 1, MSRI_MARGIN);
+static size_t around_of(size_t length) { return msri_round_up(length + 1, MSRI_MARGIN); }
+
+static size_t around(const msri_group *group) { return around_of(length(group)); }
+
+static size_t stride(const msri_group *group) {
+  return msri_patch_cells(group) + 2 * around(group);
 }
 
-static size_t stride(const msri_object *object) {
-  return msri_patch_cells(object) + 2 * around(object);
+static size_t pulls_size(int ways, size_t stride) {
+  return 2 * (size_t)(ways - MSRI_BELOW) * stride;
 }
 
-static size_t pulls_size(int ways, const msri_object *object) {
-  return 2 * (size_t)(ways - MSRI_BELOW) * stride(object);
+/* Accelerations, what is owed, and the velocities before that. Marks are needed before. */
+static size_t size_of(int ways, bool meets, size_t cells, size_t around, size_t masses) {
+  const size_t marks = msri_marks_bytes(cells, around) / sizeof(double) + 1;
+  const size_t meeting = meets ? 2 * cells + MSRI_MEET_DEBT * masses : 0;
+  const size_t later = pulls_size(ways, cells + 2 * around) + meeting;
+  return msri_field_size(cells, around) + (later > marks ? later : marks);
 }
 
-/* Accelerations, what is owed, and the velocities before that. */
-static size_t meet_size(const msri_object *object) {
-  return 2 * msri_patch_cells(object) + MSRI_MEET_DEBT * object->masses;
+size_t msri_patch_size(int ways, bool meets, const msri_group *group) {
+  return size_of(ways, meets, msri_patch_cells(group), around(group), group->masses);
 }
 
-/* Marks are needed before anything else is. */
-size_t msri_patch_size(int ways, bool meets, const msri_object *object) {
-  const size_t cells = msri_patch_cells(object);
-  const size_t marks = msri_marks_bytes(cells, around(object)) / sizeof(double) + 1;
-  const size_t later = pulls_size(ways, object) + (meets ? meet_size(object) : 0);
-  return msri_field_size(cells, around(object)) + (later > marks ? later : marks);
+size_t msri_patch_most(int ways, bool meets) {
+  return size_of(ways, meets, MOST_CELLS, around_of(2 * NARROW), MOST_CELLS);
 }
+
+/* ---- Rows of objects */
+
+/* One after the other: row r of object k, from cell `at` of its patch on. */
+typedef struct walk {
+  const msri_group *group;
+  size_t k, r, column, row, at;
+} walk;
+
+static bool is_on(walk *w) {
+  const msri_group *g = w->group;
+  if (w->k < g->n && w->r == g->object[w->k].rows)
+    w->column += g->object[w->k++].width + 1, w->r = 0;
+  if (w->k == g->n) return false;
+  w->row = g->object[w->k].row + w->r;
+  w->at = w->column + w->r * length(g);
+  return true;
+}
+
+/* ---- Patches */
 
 /* Of a field, and what comes after it in memory. */
 typedef struct place {
@@ -46,84 +96,89 @@ typedef struct place {
   double *rest;
 } place;
 
-static place place_of(const msri_object *object, double *memory) {
-  const size_t cells = msri_patch_cells(object);
-  return (place){msri_field_place(cells, around(object), memory),
-                 memory + msri_field_size(cells, around(object))};
+static place place_of(const msri_group *group, double *memory) {
+  const size_t cells = msri_patch_cells(group);
+  return (place){msri_field_place(cells, around(group), memory),
+                 memory + msri_field_size(cells, around(group))};
 }
 
-static void fill(const msri_pass *pass, const msri_object *object, const place *p) {
+static void fill(const msri_pass *pass, const msri_group *group, const place *p) {
   const msri_objects *objects = &pass->plan->objects;
-  const size_t row = length(object), cells = p->field.n;
-  const msri_marks marks = {(void *)p->rest, around(object) + 8};
+  const size_t row = length(group), cells = p->field.n;
+  const msri_marks marks = {(void *)p->rest, around(group) + 8};
   const msri_marks above = {marks.bits, marks.first - row}, below = {marks.bits, marks.first + row};
   double *const array[] = {p->field.x, p->field.y, p->field.vx, p->field.vy};
   for (size_t n = 0; n < 4; n++) memset(array[n], 0, cells * sizeof *array[n]);
-  memset(marks.bits, 0, msri_marks_bytes(cells, around(object)));
-  for (size_t r = 0; r < object->rows; r++) {
-    msri_field_fill(&p->field, objects, object->row + r, pass->state, r * row);
-    msri_marks_set(&marks, objects, object->row + r, r * row);
+  memset(marks.bits, 0, msri_marks_bytes(cells, around(group)));
+  for (walk w = {.group = group}; is_on(&w); w.r++) {
+    msri_field_fill(&p->field, objects, w.row, pass->state, w.at);
+    msri_marks_set(&marks, objects, w.row, w.at);
   }
   msri_field_tie(&p->field, pass->ways, &marks, &above, &below);
 }
 
-static msri_cells cells_of(const msri_pass *pass, const msri_object *object, const place *p) {
+static void empty(const msri_pass *pass, const msri_group *group, const msri_field *f) {
+  for (walk w = {.group = group}; is_on(&w); w.r++)
+    msri_field_empty(f, &pass->plan->objects, w.row, pass->state, w.at);
+}
+
+static bool is_unchanged(const msri_pass *pass, const msri_group *group, const msri_field *f) {
+  bool same = true;
+  for (walk w = {.group = group}; same && is_on(&w); w.r++)
+    same = msri_field_is(f, &pass->plan->objects, w.row, pass->state, w.at);
+  return same;
+}
+
+static msri_cells cells_of(const msri_pass *pass, const msri_group *group, const place *p) {
   static const ptrdiff_t shift[MSRI_WAYS] = {[MSRI_BELOW_LEFT] = 1, [MSRI_BELOW_RIGHT] = -1};
-  const size_t row = length(object);
+  const size_t row = length(group);
   msri_cells cells = msri_field_cells(&p->field);
-  double *pulls = p->rest + around(object);
+  double *pulls = p->rest + around(group);
   cells.below_x = cells.x + row, cells.below_y = cells.y + row;
-  for (int way = MSRI_BELOW; way < pass->ways; way++, pulls += 2 * stride(object)) {
-    cells.pull[way] = (msri_pull){pulls, pulls + stride(object)};
+  for (int way = MSRI_BELOW; way < pass->ways; way++, pulls += 2 * stride(group)) {
+    cells.pull[way] = (msri_pull){pulls, pulls + stride(group)};
     cells.back[way] = shift[way] - (ptrdiff_t)row;
   }
   return cells;
 }
 
-/* A stage past what is in the way. */
-static double step_past(const msri_pass *pass, const msri_stage *stage, const msri_object *object,
+msri_cells msri_patch_open(const msri_pass *pass, const msri_group *group, double *memory) {
+  const place p = place_of(group, memory);
+  fill(pass, group, &p);
+  return cells_of(pass, group, &p);
+}
+
+/* ---- Stages */
+
+/* Past what is in the way. */
+static double step_past(const msri_pass *pass, const msri_stage *stage, const msri_group *group,
                         const msri_cells *cells, msri_meet *meet) {
   msri_tally *tally = meet->tally;
-  const bool timed = msri_tally_is_turn(tally);
+  const bool timed = msri_tally_is_turn(tally), drifts = stage->motion.drift != 0;
   double start = timed ? msri_clock_now() : 0;
   const double fastest = msri_meet_kick(pass, stage, cells, meet);
   if (timed) start = msri_tally_add(tally, start, &tally->kicks);
-  for (size_t r = 0; r < object->rows && stage->motion.drift != 0; r++)
-    msri_meet_drift(pass, stage, object->row + r, fastest, cells, r * length(object), meet);
+  for (walk w = {.group = group}; drifts && is_on(&w); w.r++)
+    msri_meet_drift(pass, stage, w.row, fastest, cells, w.at, meet);
   if (timed) msri_tally_add(tally, start, &tally->drifts);
   return fastest;
 }
 
-static bool is_unchanged(const msri_pass *pass, const msri_object *object, const msri_field *f) {
-  bool same = true;
-  for (size_t r = 0; r < object->rows && same; r++)
-    same = msri_field_is(f, &pass->plan->objects, object->row + r, pass->state, r * length(object));
-  return same;
-}
-
-msri_cells msri_patch_open(const msri_pass *pass, const msri_object *object, double *memory) {
-  const place p = place_of(object, memory);
-  fill(pass, object, &p);
-  return cells_of(pass, object, &p);
-}
-
-double msri_patch_run(const msri_pass *pass, const msri_object *object, bool filled, bool kept,
+double msri_patch_run(const msri_pass *pass, const msri_group *group, bool filled, bool kept,
                       double *memory, msri_tally *tally, bool *same) {
-  const place p = place_of(object, memory);
-  double *meeting = p.rest + pulls_size(pass->ways, object), fastest = 0;
+  const place p = place_of(group, memory);
+  double *meeting = p.rest + pulls_size(pass->ways, stride(group)), fastest = 0;
   msri_meet meet = {.tally = tally};
-  if (!filled) fill(pass, object, &p);
-  const msri_cells cells = cells_of(pass, object, &p);
-  if (pass->meets) meet = msri_meet_place(cells.n, object->masses, meeting, tally);
+  if (!filled) fill(pass, group, &p);
+  const msri_cells cells = cells_of(pass, group, &p);
+  if (pass->meets) meet = msri_meet_place(cells.n, group->masses, meeting, tally);
   for (int s = 0; s < pass->stages; s++) {
     const msri_stage *stage = &pass->stage[s];
-    const double speed = pass->meets ? step_past(pass, stage, object, &cells, &meet)
+    const double speed = pass->meets ? step_past(pass, stage, group, &cells, &meet)
                                      : msri_field_step(pass, stage, &cells);
     fastest = msri_worse(speed, fastest);
   }
-  if (same) *same = is_unchanged(pass, object, &p.field);
-  for (size_t r = 0; r < object->rows && !kept; r++)
-    msri_field_empty(&p.field, &pass->plan->objects, object->row + r, pass->state,
-                     r * length(object));
+  if (same) *same = is_unchanged(pass, group, &p.field);
+  if (!kept) empty(pass, group, &p.field);
   return fastest;
 }

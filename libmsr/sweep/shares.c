@@ -31,7 +31,8 @@ size_t msri_shares_size(const msr_plan *plan, int ways) {
   size_t most = 0;
   for (size_t n = 0; n < plan->objects.n; n++) {
     const msri_object part = window(&plan->objects.object[n], 0);
-    const size_t size = msri_patch_size(ways, false, &part) + 2 * msri_patch_cells(&part);
+    const msri_group alone = msri_group_of(&part, 1);
+    const size_t size = msri_patch_size(ways, false, &alone) + 2 * msri_patch_cells(&alone);
     if (most < size) most = size;
   }
   return most;
@@ -118,8 +119,9 @@ void msri_shares_measure(msri_shares *s, const msri_pass *pass) {
   if (LEAST * s->measuring > s->sweeping) return;
   const double start = msri_clock_now();
   const msri_object part = choose(s, &pass->plan->objects);
-  const subject cells = {pass, msri_patch_open(pass, &part, s->memory), at_rest(pass),
-                         s->memory + msri_patch_size(pass->ways, false, &part)};
+  const msri_group alone = msri_group_of(&part, 1);
+  const subject cells = {pass, msri_patch_open(pass, &alone, s->memory), at_rest(pass),
+                         s->memory + msri_patch_size(pass->ways, false, &alone)};
   const double copying = 2 * (msri_clock_now() - start);
   for (int n = 0; n < KERNELS; n++) took[n] = (double)INFINITY;
   for (int round = 0; round < ROUNDS; round++)

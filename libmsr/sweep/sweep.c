@@ -19,6 +19,7 @@ enum {
   SHARED_MASSES = 8192, /* of an object that is worth sharing among threads */
   LEAST_STAGES = 4,     /* of a pass: fewer would have threads wait for each other too often */
   LOOK = 64,            /* stages between two looks at speeds */
+  MOST_SHARED = 32,     /* small objects that are one thread's together */
   LINE = 64             /* of the cache, and the widest vector */
 };
 
@@ -86,7 +87,8 @@ bool msri_plan_sweeps(const msr_plan *plan) {
 /* ---- Who does what */
 
 static bool is_small(const msr_plan *plan, const msri_object *object) {
-  const size_t cells = msri_patch_cells(object);
+  const msri_group alone = msri_group_of(object, 1);
+  const size_t cells = msri_patch_cells(&alone);
   const bool dense = cells <= PATCH_CELLS && 4 * object->masses >= object->rows * object->width;
   const bool many = plan->objects.n >= 4 * (size_t)plan->threads;
   const bool shared = plan->threads > 1 && !many && !msri_plan_meets(plan);
@@ -98,6 +100,16 @@ static unsigned parts_of(const msr_plan *plan, const msri_object *object, int de
   const size_t most = object->rows / (2 * (size_t)depth);
   if (object->masses < SHARED_MASSES || most < 2 || msri_plan_meets(plan)) return 1;
   return most < plan->threads ? (unsigned)most : plan->threads;
+}
+
+/* Objects that follow each other and are the same thread's. */
+static size_t share_of(const msr_plan *plan) {
+  const size_t share = plan->objects.n / (4 * (size_t)plan->threads);
+  return share < 1 ? 1 : share < MOST_SHARED ? share : MOST_SHARED;
+}
+
+static unsigned owner_of(const msr_plan *plan, size_t object) {
+  return (unsigned)(object / share_of(plan) % plan->threads);
 }
 
 static int depth_for(const msr_plan *plan, const msri_object *object, int ways) {
@@ -148,12 +160,14 @@ static room room_for(const msr_plan *plan) {
   }
   for (size_t n = 0; n < o->n; n++) {
     const msri_object *object = &o->object[n];
+    const msri_group alone = msri_group_of(object, 1);
     if (is_small(plan, object))
-      widen(&r.patch, msri_patch_size(ways, msri_plan_meets(plan), object));
+      widen(&r.patch, msri_patch_size(ways, msri_plan_meets(plan), &alone));
     else
       widen(parts_of(plan, object, r.depth) > 1 ? &r.parts : &r.rows,
             msri_rows_size(ways, msri_plan_meets(plan), object->width, r.depth));
   }
+  if (share_of(plan) > 1) widen(&r.patch, msri_patch_most(ways, msri_plan_meets(plan)));
   r.shares = plan->timed ? msri_shares_size(plan, ways) : 0;
   r.patch = msri_round_up(r.patch, LINE / sizeof(double));
   r.rows = msri_round_up(r.rows, LINE / sizeof(double));
@@ -275,6 +289,7 @@ static double run_large(msri_sweep *s, const msri_object *object, unsigned threa
  * whose memory for a part no other looks at. */
 static double look_at(msri_sweep *s, size_t n, unsigned thread) {
   const msri_object *object = &s->pass.plan->objects.object[n];
+  const msri_group alone = msri_group_of(object, 1);
   const bool small = is_small(s->pass.plan, object);
   worker *me = &s->worker[thread];
   const uint64_t met = me->tally.met;
@@ -282,10 +297,10 @@ static double look_at(msri_sweep *s, size_t n, unsigned thread) {
   bool *same = &s->rest.same[n];
   msri_part all = {.parts = 1, .begin = begin, .memory = &me->rows, .same = same};
   double fastest;
-  if (thread != (small ? n % s->threads : 0)) return 0;
+  if (thread != (small ? owner_of(s->pass.plan, n) : 0)) return 0;
   if (parts_of(s->pass.plan, object, s->depth) > 1) all.memory = s->parts;
   if (small)
-    fastest = msri_patch_run(&s->pass, object, false, false, me->patch, &me->tally, same);
+    fastest = msri_patch_run(&s->pass, &alone, false, false, me->patch, &me->tally, same);
   else
     fastest = msri_rows_run(&s->pass, object, &all, &me->tally);
   if (*same) me->stays += me->tally.met - met;
@@ -306,6 +321,16 @@ static double run_mesh(msri_sweep *s, unsigned thread, unsigned *turn) {
   return msri_bands_run(&s->pass, &part);
 }
 
+/* Small objects from the n-th on that are a thread's and are stepped as usual. */
+static size_t count_alike(const msri_sweep *s, size_t n, unsigned thread) {
+  const msr_plan *plan = s->pass.plan;
+  const size_t first = n, last = msri_lesser(plan->objects.n, n + MOST_SHARED);
+  while (n < last && s->rest.how[n] == MSRI_STEPPED && owner_of(plan, n) == thread &&
+         is_small(plan, &plan->objects.object[n]))
+    n++;
+  return n - first;
+}
+
 static void work(void *self, unsigned thread) {
   msri_sweep *s = self;
   const msri_objects *objects = &s->pass.plan->objects;
@@ -313,17 +338,19 @@ static void work(void *self, unsigned thread) {
   unsigned turn = s->turn;
   me->fastest = 0;
   me->tally.met = me->stays = 0;
-  for (size_t n = 0; n < objects->n; n++) {
+  for (size_t n = 0, taken; n < objects->n; n += taken) {
     const msri_object *object = &objects->object[n];
-    const unsigned owner = (unsigned)(n % s->threads);
+    const size_t alike = count_alike(s, n, thread);
     double fastest = 0;
-    if (s->rest.how[n] == MSRI_LEFT_OUT) continue;
-    if (s->rest.how[n] == MSRI_LOOKED_AT)
+    taken = 1;
+    if (alike > 0) {
+      const msri_group group = msri_group_of(object, alike);
+      fastest = msri_patch_run(&s->pass, &group, s->filled, s->kept, me->patch, &me->tally, NULL);
+      taken = group.n;
+    } else if (s->rest.how[n] == MSRI_LOOKED_AT)
       fastest = look_at(s, n, thread);
-    else if (!is_small(s->pass.plan, object))
-      fastest = run_large(s, object, thread, owner, &turn);
-    else if (owner == thread)
-      fastest = msri_patch_run(&s->pass, object, s->filled, s->kept, me->patch, &me->tally, NULL);
+    else if (s->rest.how[n] == MSRI_STEPPED && !is_small(s->pass.plan, object))
+      fastest = run_large(s, object, thread, owner_of(s->pass.plan, n), &turn);
     me->fastest = msri_worse(fastest, me->fastest);
   }
   if (has_bands(s->pass.plan)) me->fastest = run_mesh(s, thread, &turn);
