@@ -104,8 +104,9 @@ static unsigned parts_of(const msr_plan *plan, const msri_object *object, int de
 
 /* Objects that follow each other and are the same thread's. */
 static size_t share_of(const msr_plan *plan) {
-  const size_t share = plan->objects.n / (4 * (size_t)plan->threads);
-  return share < 1 ? 1 : share < MOST_SHARED ? share : MOST_SHARED;
+  const size_t n = plan->objects.n, threads = plan->threads;
+  const size_t share = threads > 1 ? n / (4 * threads) : n;
+  return share < 1 ? 1 : msri_lesser(share, MOST_SHARED);
 }
 
 static unsigned owner_of(const msr_plan *plan, size_t object) {
@@ -324,7 +325,7 @@ static double run_mesh(msri_sweep *s, unsigned thread, unsigned *turn) {
 /* Small objects from the n-th on that are a thread's and are stepped as usual. */
 static size_t count_alike(const msri_sweep *s, size_t n, unsigned thread) {
   const msr_plan *plan = s->pass.plan;
-  const size_t first = n, last = msri_lesser(plan->objects.n, n + MOST_SHARED);
+  const size_t first = n, last = msri_lesser(plan->objects.n, n + share_of(plan));
   while (n < last && s->rest.how[n] == MSRI_STEPPED && owner_of(plan, n) == thread &&
          is_small(plan, &plan->objects.object[n]))
     n++;
