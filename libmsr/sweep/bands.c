@@ -34,13 +34,11 @@ unsigned msri_bands_parts(const msri_bands *bands, unsigned threads) {
   return most < 2 ? 1 : most < threads ? (unsigned)most : threads;
 }
 
-static size_t least(size_t a, size_t b) { return a < b ? a : b; }
-
 /* Of a band: x, y, vx, vy and, at each stage, forces on two. */
 int msri_bands_stages(const msri_bands *bands, unsigned parts) {
   const size_t fit = cache / (8 * bands->length * sizeof(double));
   const size_t most = parts > 1 ? bands->n / (2 * (size_t)parts) : bands->n;
-  const size_t stages = least(least(fit, most), MSRI_MOST_STAGES);
+  const size_t stages = msri_lesser(msri_lesser(fit, most), MSRI_MOST_STAGES);
   return stages < 1 ? 1 : (int)stages;
 }
 

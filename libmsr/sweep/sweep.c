@@ -268,13 +268,20 @@ static double run_part(msri_sweep *s, const msri_object *object, const msri_part
   return fastest;
 }
 
+/* The first part works on half a wedge more than its rows, the last one on less. */
+static void share_out(const msri_sweep *s, size_t rows, size_t parts, size_t *begin) {
+  const size_t more = ((size_t)s->pass.stages - 1) / 2;
+  for (size_t p = 0; p <= parts; p++)
+    begin[p] = rows * p / parts - (p > 0 && p < parts ? more : 0);
+}
+
 static double run_large(msri_sweep *s, const msri_object *object, unsigned thread, unsigned owner,
                         unsigned *turn) {
   const unsigned parts = parts_of(s->pass.plan, object, s->depth);
   msri_tally *tally = &s->worker[thread].tally;
   size_t begin[MSRI_MOST_THREADS + 1];
   msri_part part = {.parts = parts, .begin = begin, .opened = s->opened, .memory = s->parts};
-  for (size_t p = 0; p <= parts; p++) begin[p] = object->rows * p / parts;
+  share_out(s, object->rows, parts, begin);
   if (parts == 1) {
     part.memory = &s->worker[thread].rows;
     return thread == owner ? msri_rows_run(&s->pass, object, &part, tally) : 0;
@@ -312,7 +319,7 @@ static double look_at(msri_sweep *s, size_t n, unsigned thread) {
 static double run_mesh(msri_sweep *s, unsigned thread, unsigned *turn) {
   const size_t bands = s->pass.plan->bands.n, parts = s->threads;
   size_t begin[MSRI_MOST_THREADS + 1];
-  for (size_t p = 0; p <= parts; p++) begin[p] = bands * p / parts;
+  share_out(s, bands, parts, begin);
   const msri_part part = {.number = thread,
                           .parts = parts,
                           .begin = begin,
