@@ -443,7 +443,8 @@ static void end_look(msri_sweep *s) {
 msri_progress msri_sweep_run(msri_sweep *s, const msri_swept *state, msri_course course,
                              double fastest, bool known) {
   msri_progress progress = {.known = known};
-  const uint64_t most = s->pass.meets ? (uint64_t)s->depth - 1 : course.steps;
+  const uint64_t drifts = (uint64_t)msri_splitting_drifts(course.plan->figures.integrator);
+  const uint64_t most = s->pass.meets ? ((uint64_t)s->depth - 1) / drifts : course.steps;
   const uint64_t substeps = course.plan->figures.substeps;
   s->pass.state = state;
   bool looks = s->rests && msri_rest_look(course.plan, state, &s->rest);
