@@ -345,7 +345,10 @@ static void make(const msri_canvas_kernel *kernel, size_t scale, const double *x
                  const msri_colours *paints, unsigned char *rgb) {
   msri_canvas canvas;
   must(msri_canvas_create(SIDE, SIDE, scale, &canvas, &why));
-  kernel->draw(&canvas, PLACES, x, y, paints);
+  static int32_t at[PLACES];
+  if (scale == 1) kernel->draw(&canvas, paints, PLACES, x, y);
+  if (scale > 1) kernel->find(&canvas, PLACES, x, y, at);
+  if (scale > 1) msri_canvas_complete(&canvas, paints, PLACES, at);
   memcpy(rgb, canvas.frame.rgb, 3 * scale * scale * SIDE * SIDE);
   msri_canvas_clear(&canvas);
 }

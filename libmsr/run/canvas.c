@@ -1,8 +1,9 @@
 /* canvas.c - where masses are among the pixels, and their squares.
  *
- * Some masses at a time: places to numbers of pixels, a plain loop that is compiled for vectors of
- * several widths, then squares in their order, while these numbers are in the fastest cache. At
- * scale 1 masses that follow each other in the frame as well are drawn eight at once. */
+ * Places to numbers of pixels is a plain loop, compiled for vectors of several widths; squares
+ * follow in their order. At scale 1 all is done some masses at a time, while these numbers are in
+ * the fastest cache, and masses that follow each other in the frame as well are drawn eight at
+ * once. */
 #include "run/canvas.h"
 
 #include "base/machine.h"
@@ -116,57 +117,78 @@ static void set_square(const msri_canvas *canvas, int32_t at, const unsigned cha
       memcpy(frame->rgb + 3 * (r * frame->width + c), colour, 3);
 }
 
-MSRI_INLINE void draw(const msri_canvas *canvas, size_t n, const double *x, const double *y,
-                      const msri_colours *colours) {
+static size_t stride_of(const msri_colours *colours) { return colours->alike ? 0 : 3; }
+
+MSRI_INLINE void draw(const msri_canvas *canvas, const msri_colours *colours, size_t n,
+                      const double *x, const double *y) {
   const grid g = grid_of(canvas);
-  const size_t stride = colours->alike ? 0 : 3;
+  const size_t stride = stride_of(colours);
   for (size_t i = 0; i < n; i += AT_ONCE) {
     int32_t at[AT_ONCE];
     unsigned char breaks[AT_ONCE];
     const size_t count = n - i < AT_ONCE ? n - i : AT_ONCE;
-    const unsigned char *colour = colours->rgb + i * stride;
     find(g, count, x + i, y + i, at);
-    if (canvas->scale == 1) {
-      find_breaks(count, at, breaks);
-      set_pixels(count, at, breaks, colour, stride, canvas->frame.rgb);
-      continue;
-    }
-    for (size_t k = 0; k < count; k++) set_square(canvas, at[k], colour + k * stride);
+    find_breaks(count, at, breaks);
+    set_pixels(count, at, breaks, colours->rgb + i * stride, stride, canvas->frame.rgb);
   }
 }
 
 /* ---- Kernels */
 
 #if MSRI_WIDE
-MSRI_AVX512 static void draw_avx512(const msri_canvas *canvas, size_t n, const double *x,
-                                    const double *y, const msri_colours *colours) {
-  draw(canvas, n, x, y, colours);
+MSRI_AVX512 static void find_avx512(const msri_canvas *canvas, size_t n, const double *x,
+                                    const double *y, int32_t *at) {
+  find(grid_of(canvas), n, x, y, at);
 }
 
-MSRI_AVX2 static void draw_avx2(const msri_canvas *canvas, size_t n, const double *x,
-                                const double *y, const msri_colours *colours) {
-  draw(canvas, n, x, y, colours);
+MSRI_AVX512 static void draw_avx512(const msri_canvas *canvas, const msri_colours *colours,
+                                    size_t n, const double *x, const double *y) {
+  draw(canvas, colours, n, x, y);
+}
+
+MSRI_AVX2 static void find_avx2(const msri_canvas *canvas, size_t n, const double *x,
+                                const double *y, int32_t *at) {
+  find(grid_of(canvas), n, x, y, at);
+}
+
+MSRI_AVX2 static void draw_avx2(const msri_canvas *canvas, const msri_colours *colours, size_t n,
+                                const double *x, const double *y) {
+  draw(canvas, colours, n, x, y);
 }
 #endif
 
-static void draw_anywhere(const msri_canvas *canvas, size_t n, const double *x, const double *y,
-                          const msri_colours *colours) {
-  draw(canvas, n, x, y, colours);
+static void find_anywhere(const msri_canvas *canvas, size_t n, const double *x, const double *y,
+                          int32_t *at) {
+  find(grid_of(canvas), n, x, y, at);
+}
+
+static void draw_anywhere(const msri_canvas *canvas, const msri_colours *colours, size_t n,
+                          const double *x, const double *y) {
+  draw(canvas, colours, n, x, y);
 }
 
 const msri_canvas_kernel msri_canvas_kernels[] = {
 #if MSRI_WIDE
-    {"AVX-512", msri_has_avx512, draw_avx512},
-    {"AVX2", msri_has_avx2, draw_avx2},
+    {"AVX-512", msri_has_avx512, find_avx512, draw_avx512},
+    {"AVX2", msri_has_avx2, find_avx2, draw_avx2},
 #endif
-    {"any", NULL, draw_anywhere},
+    {"any", NULL, find_anywhere, draw_anywhere},
 };
 
-void msri_canvas_draw(msri_canvas *canvas, size_t n, const double *x, const double *y,
-                      const msri_colours *colours) {
+void msri_canvas_take(msri_canvas *canvas, const msri_colours *colours, size_t n, const double *x,
+                      const double *y, int32_t *at) {
   const msri_canvas_kernel *kernel = msri_canvas_kernels;
   while (kernel->runs_here && !kernel->runs_here()) kernel++;
   if (!canvas->white) msri_canvas_whiten(canvas);
   canvas->white = false;
-  kernel->draw(canvas, n, x, y, colours);
+  if (at)
+    kernel->find(canvas, n, x, y, at);
+  else
+    kernel->draw(canvas, colours, n, x, y);
+}
+
+void msri_canvas_complete(const msri_canvas *canvas, const msri_colours *colours, size_t n,
+                          const int32_t *at) {
+  const size_t stride = stride_of(colours);
+  for (size_t i = 0; i < n; i++) set_square(canvas, at[i], colours->rgb + i * stride);
 }

@@ -29,16 +29,21 @@ void msri_canvas_clear(msri_canvas *canvas);
 
 void msri_canvas_whiten(msri_canvas *canvas);
 
-/* Draws masses at x, y [n], one after the other, over white. */
-void msri_canvas_draw(msri_canvas *canvas, size_t n, const double *x, const double *y,
-                      const msri_colours *colours);
+/* Takes masses at x, y [n], over white, one after the other: draws them if `at` is NULL, which is
+ * for scale 1; else finds where their squares begin, at [n], and msri_canvas_complete draws
+ * them. */
+void msri_canvas_take(msri_canvas *canvas, const msri_colours *colours, size_t n, const double *x,
+                      const double *y, int32_t *at);
+void msri_canvas_complete(const msri_canvas *canvas, const msri_colours *colours, size_t n,
+                          const int32_t *at);
 
-/* Drawing compiled for one width of vectors. */
+/* Both compiled for one width of vectors. */
 typedef struct msri_canvas_kernel {
   const char *name;
   bool (*runs_here)(void); /* NULL: everywhere */
-  void (*draw)(const msri_canvas *canvas, size_t n, const double *x, const double *y,
-               const msri_colours *colours); /* over what is there */
+  void (*find)(const msri_canvas *canvas, size_t n, const double *x, const double *y, int32_t *at);
+  void (*draw)(const msri_canvas *canvas, const msri_colours *colours, size_t n, const double *x,
+               const double *y);
 } msri_canvas_kernel;
 extern const msri_canvas_kernel
     msri_canvas_kernels[]; /* the widest first; the last runs anywhere */

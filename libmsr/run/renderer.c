@@ -26,6 +26,7 @@ struct msr_renderer {
   size_t n_supports, support_capacity;
   size_t masses;
   msri_colours colours;
+  int32_t *at; /* [masses] if the scale isn't 1: where squares begin */
 };
 
 /* ---- Colours */
@@ -121,7 +122,12 @@ static msr_status prepare(msr_renderer *renderer, const msr_plan *plan, const ms
   renderer->masses = plan->figures.masses;
   msr_status status =
       msri_canvas_create(plan->figures.width, plan->figures.height, scale, &renderer->canvas, err);
-  if (status == MSR_OK) status = find_supports(renderer, plan, err);
+  if (status != MSR_OK) return status;
+  if (scale > 1) {
+    renderer->at = msri_alloc(renderer->masses, sizeof *renderer->at, "the places", err);
+    if (!renderer->at) return MSR_ENOMEM;
+  }
+  status = find_supports(renderer, plan, err);
   return status == MSR_OK ? colour_masses(renderer, plan, style, err) : status;
 }
 
@@ -144,6 +150,7 @@ void msr_renderer_free(msr_renderer *renderer) {
   msri_canvas_clear(&renderer->canvas);
   free(renderer->support);
   free(renderer->colours.rgb);
+  free(renderer->at);
   free(renderer);
 }
 
@@ -151,17 +158,21 @@ void msr_renderer_free(msr_renderer *renderer) {
 
 void msri_renderer_take(msr_renderer *renderer, const msr_state *state) {
   const msr_view s = msr_state_view(state);
-  msri_canvas_draw(&renderer->canvas, s.n, s.x, s.y, &renderer->colours);
+  msri_canvas_take(&renderer->canvas, &renderer->colours, s.n, s.x, s.y, renderer->at);
 }
 
-static void draw_supports(const msr_renderer *renderer) {
+/* What doesn't need the state. */
+static void complete(const msr_renderer *renderer) {
+  const msri_canvas *canvas = &renderer->canvas;
+  if (renderer->at)
+    msri_canvas_complete(canvas, &renderer->colours, renderer->masses, renderer->at);
   for (const stretch *s = renderer->support; s < renderer->support + renderer->n_supports; s++)
-    memset(renderer->canvas.frame.rgb + 3 * (size_t)s->first, 0, 3 * (size_t)s->count);
+    memset(canvas->frame.rgb + 3 * (size_t)s->first, 0, 3 * (size_t)s->count);
 }
 
 const msr_picture *msr_renderer_draw(msr_renderer *renderer, const msr_state *state) {
   msri_renderer_take(renderer, state);
-  draw_supports(renderer);
+  complete(renderer);
   return &renderer->canvas.frame;
 }
 
@@ -181,7 +192,7 @@ static msr_status write_frame(const msr_picture *frame, msri_file *file, msr_err
 msr_status msri_renderer_write(msr_renderer *renderer, msri_file *file, double *drawing,
                                msr_error *err) {
   const double start = msri_clock_now();
-  draw_supports(renderer);
+  complete(renderer);
   const double drawn = msri_clock_now();
   const msr_status status = write_frame(&renderer->canvas.frame, file, err);
   const double written = msri_clock_now();
