@@ -94,7 +94,7 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags
 	$(call show,CC)$(COMPILE) $(INTERNAL) $(OWN) -MMD -MP -c $< -o $@
 
 # gcc vectorises floor() and comparisons of numbers only if they can't trap.
-$(call object,libmsr/contacts/flock.c): ARITHMETIC += -fno-trapping-math
+$(call object,libmsr/contacts/flock.c libmsr/run/canvas.c): ARITHMETIC += -fno-trapping-math
 
 $(BUILD)/libmsr.a: $(LIB_OBJ) $(BUILD)/sources
 	@rm -f $@

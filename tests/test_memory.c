@@ -268,7 +268,7 @@ static bool make_renderer(void) {
 
 static void renderers(void **unused) {
   (void)unused;
-  assert_each_failure_is_told(make_renderer, 6);
+  assert_each_failure_is_told(make_renderer, 7);
 }
 
 static bool open_all(msr_sink sinks[3], msr_error *err) {

@@ -293,10 +293,12 @@ static double anywhere(size_t size) {
   }
 }
 
-static void scatter(msr_state *state, const msr_picture *scene) {
+/* A part of the masses, at random. */
+static void scatter(msr_state *state, const msr_picture *scene, int part) {
   const msr_arrays a = msr_state_edit(state);
   const size_t n = msr_state_view(state).n;
-  for (size_t i = 0; i < n; i++) a.x[i] = anywhere(scene->width), a.y[i] = anywhere(scene->height);
+  for (size_t i = 0; i < n; i++)
+    if (rand() % part == 0) a.x[i] = anywhere(scene->width), a.y[i] = anywhere(scene->height);
 }
 
 static void frames_are_those_drawn_simply(void **unused) {
@@ -308,8 +310,8 @@ static void frames_are_those_drawn_simply(void **unused) {
       for (size_t p = 0; p < scene->width * scene->height; p++)
         if (p % 7) memcpy(scene->rgb + 3 * p, rgb_of('o'), 3);
     const drawing d = drawing_of_scene(scene_in(scene), &style);
-    for (int again = 0; again < 2; again++) {
-      scatter(d.state, scene);
+    for (int again = 1; again >= 0; again--) { // first most stay where they follow each other
+      scatter(d.state, scene, 1 + 20 * again);
       const msr_view s = msr_state_view(d.state);
       msr_picture *due = drawn_simply(scene, &style, &s);
       assert_same_picture(msr_renderer_draw(d.renderer, d.state), due);
@@ -324,41 +326,54 @@ static void frames_are_those_drawn_simply(void **unused) {
 
 enum { PLACES = 1003, SIDE = 37 };
 
-/* What a kernel makes of some places: the pixels of a canvas where squares begin, and of what the
- * canvas then is in bytes. */
-typedef struct made {
-  int32_t at[PLACES];
-  unsigned char rgb[3 * 9 * SIDE * SIDE];
-} made;
+/* What a kernel makes of places: many in a row follow each other in the frame as well, and ends
+ * of such stretches are anywhere among them. */
+static void put_in_rows(double *x, double *y) {
+  for (size_t i = 0, column = 0, row = 0; i < PLACES; i++, column++) {
+    if (rand() % 12 == 0) column = (size_t)rand() % SIDE, row = (size_t)rand() % (SIDE + 1);
+    x[i] = (double)column + 0.5;
+    y[i] = SIDE - (double)row - 0.5;
+  }
+}
 
+static void put_anywhere(double *x, double *y) {
+  for (size_t i = 0; i < PLACES; i++) x[i] = anywhere(SIDE), y[i] = anywhere(SIDE);
+}
+
+/* The frame that a kernel draws. */
 static void make(const msri_canvas_kernel *kernel, size_t scale, const double *x, const double *y,
-                 made *m) {
-  static const uint32_t colour[] = {0x010203};
+                 const msri_colours *paints, unsigned char *rgb) {
   msri_canvas canvas;
   must(msri_canvas_create(SIDE, SIDE, scale, &canvas, &why));
-  memset(m, 0, sizeof *m);
-  for (int again = 0; again < 2; again++) { // the canvas is left white
-    kernel->find(&canvas, PLACES / (size_t)(1 + again), x, y, m->at);
-    msri_canvas_fill(&canvas, PLACES / (size_t)(1 + again), m->at, colour, 0);
-    kernel->move(&canvas, 0, canvas.height, m->rgb);
-  }
+  static int32_t at[PLACES];
+  if (scale == 1) kernel->draw(&canvas, paints, PLACES, x, y);
+  if (scale > 1) kernel->find(&canvas, PLACES, x, y, at);
+  if (scale > 1) msri_canvas_complete(&canvas, paints, PLACES, at);
+  memcpy(rgb, canvas.frame.rgb, 3 * scale * scale * SIDE * SIDE);
   msri_canvas_clear(&canvas);
+}
+
+static void assert_kernels_agree(size_t scale, const double *x, const double *y,
+                                 const msri_colours *paints) {
+  static unsigned char any[3 * 9 * SIDE * SIDE], wide[sizeof any];
+  const msri_canvas_kernel *last = msri_canvas_kernels;
+  while (last->runs_here) last++;
+  make(last, scale, x, y, paints, any);
+  for (const msri_canvas_kernel *k = msri_canvas_kernels; k < last; k++) {
+    if (!k->runs_here()) continue;
+    make(k, scale, x, y, paints, wide);
+    assert_memory_equal(any, wide, 3 * scale * scale * SIDE * SIDE);
+  }
 }
 
 static void kernels_agree(void **unused) {
   (void)unused;
   static double x[PLACES], y[PLACES];
-  static made any, wide;
-  for (size_t i = 0; i < PLACES; i++) x[i] = anywhere(SIDE), y[i] = anywhere(SIDE);
-  for (size_t scale = 1; scale < 4; scale++) {
-    const msri_canvas_kernel *last = msri_canvas_kernels;
-    while (last->runs_here) last++;
-    make(last, scale, x, y, &any);
-    for (const msri_canvas_kernel *k = msri_canvas_kernels; k < last; k++) {
-      if (!k->runs_here()) continue;
-      make(k, scale, x, y, &wide);
-      assert_memory_equal(&any, &wide, sizeof any);
-    }
+  static unsigned char rgb[3 * PLACES];
+  for (size_t i = 0; i < sizeof rgb; i++) rgb[i] = (unsigned char)rand();
+  for (unsigned trial = 0; trial < 12; trial++) {
+    (trial % 2 ? put_anywhere : put_in_rows)(x, y);
+    assert_kernels_agree(1 + trial % 3, x, y, &(msri_colours){rgb, false});
   }
 }
 

@@ -15,29 +15,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Pixels of the canvas, side by side. */
+/* Pixels of the frame, side by side. */
 typedef struct stretch {
   uint32_t first, count;
 } stretch;
 
 struct msr_renderer {
   msri_canvas canvas;
-  msr_picture *frame;
   stretch *support; /* [n_supports] */
   size_t n_supports, support_capacity;
   size_t masses;
-  int32_t *at;      /* [masses]: pixels of the canvas */
-  uint32_t *colour; /* [masses], or if the stride is 0 [1] */
-  size_t stride;
+  msri_colours colours;
+  int32_t *at; /* [masses] if the scale isn't 1: where squares begin */
 };
 
 /* ---- Colours */
 
 static const unsigned char green[3] = {0, 160, 0};
-
-static uint32_t pixel_of(const unsigned char *rgb) {
-  return rgb[0] | (uint32_t)rgb[1] << 8 | (uint32_t)rgb[2] << 16;
-}
 
 /* Gives every other stripe of the scene's rows another colour. */
 static void stripe(const msr_plan *plan, const msr_style *style, unsigned char *rgb, double *y) {
@@ -62,16 +56,17 @@ static msr_status stripe_masses(const msr_plan *plan, const msr_style *style, un
   return MSR_OK;
 }
 
-/* One colour is kept once. */
+/* One colour is kept a few times only. */
 static msr_status keep_colours(msr_renderer *renderer, const unsigned char *rgb, msr_error *err) {
   const size_t n = renderer->masses;
   size_t same = n > 0;
   while (same < n && memcmp(rgb, rgb + 3 * same, 3) == 0) same++;
-  renderer->stride = same < n;
-  const size_t kept = same < n ? n : same > 0;
-  renderer->colour = msri_alloc(kept, sizeof *renderer->colour, "the colours", err);
-  if (!renderer->colour) return MSR_ENOMEM;
-  for (size_t i = 0; i < kept; i++) renderer->colour[i] = pixel_of(rgb + 3 * i);
+  const bool alike = same == n;
+  const size_t kept = alike ? MSRI_CANVAS_GROUP : n;
+  renderer->colours = (msri_colours){msri_alloc(kept, 3, "the colours", err), alike};
+  if (!renderer->colours.rgb) return MSR_ENOMEM;
+  if (!alike) memcpy(renderer->colours.rgb, rgb, 3 * n);
+  for (size_t i = 0; alike && n > 0 && i < kept; i++) memcpy(renderer->colours.rgb + 3 * i, rgb, 3);
   return MSR_OK;
 }
 
@@ -100,14 +95,14 @@ static bool next_support(const msr_plan *plan, size_t row, size_t *from, size_t 
 /* As every row of pixels in the scene's row has it. */
 static msr_status add_support(msr_renderer *renderer, size_t row, size_t from, size_t to,
                               msr_error *err) {
-  const size_t scale = renderer->canvas.scale, line = msri_canvas_line(&renderer->canvas);
+  const size_t scale = renderer->canvas.scale, line = renderer->canvas.frame.width;
   stretch *grown = msri_grow(renderer->support, &renderer->support_capacity,
                              renderer->n_supports + scale, sizeof *grown, "the supports", err);
   if (!grown) return MSR_ENOMEM;
   renderer->support = grown;
-  for (size_t r = scale + row * scale; r < scale + (row + 1) * scale; r++)
+  for (size_t r = row * scale; r < (row + 1) * scale; r++)
     grown[renderer->n_supports++] =
-        (stretch){(uint32_t)(r * line + scale + from * scale), (uint32_t)((to - from) * scale)};
+        (stretch){(uint32_t)(r * line + from * scale), (uint32_t)((to - from) * scale)};
   return MSR_OK;
 }
 
@@ -124,15 +119,15 @@ static msr_status find_supports(msr_renderer *renderer, const msr_plan *plan, ms
 static msr_status prepare(msr_renderer *renderer, const msr_plan *plan, const msr_style *style,
                           msr_error *err) {
   const size_t scale = style->scale ? style->scale : 1;
-  msri_canvas *canvas = &renderer->canvas;
   renderer->masses = plan->figures.masses;
   msr_status status =
-      msri_canvas_create(plan->figures.width, plan->figures.height, scale, canvas, err);
+      msri_canvas_create(plan->figures.width, plan->figures.height, scale, &renderer->canvas, err);
   if (status != MSR_OK) return status;
-  renderer->at = msri_alloc(renderer->masses, sizeof *renderer->at, "the places", err);
-  if (!renderer->at) return MSR_ENOMEM;
-  status = msr_picture_create(canvas->width, canvas->height, &renderer->frame, err);
-  if (status == MSR_OK) status = find_supports(renderer, plan, err);
+  if (scale > 1) {
+    renderer->at = msri_alloc(renderer->masses, sizeof *renderer->at, "the places", err);
+    if (!renderer->at) return MSR_ENOMEM;
+  }
+  status = find_supports(renderer, plan, err);
   return status == MSR_OK ? colour_masses(renderer, plan, style, err) : status;
 }
 
@@ -153,10 +148,9 @@ msr_status msr_renderer_create(const msr_plan *plan, const msr_style *style,
 void msr_renderer_free(msr_renderer *renderer) {
   if (!renderer) return;
   msri_canvas_clear(&renderer->canvas);
-  msr_picture_free(renderer->frame);
   free(renderer->support);
+  free(renderer->colours.rgb);
   free(renderer->at);
-  free(renderer->colour);
   free(renderer);
 }
 
@@ -164,42 +158,45 @@ void msr_renderer_free(msr_renderer *renderer) {
 
 void msri_renderer_take(msr_renderer *renderer, const msr_state *state) {
   const msr_view s = msr_state_view(state);
-  msri_canvas_find(&renderer->canvas, s.n, s.x, s.y, renderer->at);
+  msri_canvas_take(&renderer->canvas, &renderer->colours, s.n, s.x, s.y, renderer->at);
 }
 
-static void paint(const msr_renderer *renderer) {
+/* What doesn't need the state. */
+static void complete(const msr_renderer *renderer) {
   const msri_canvas *canvas = &renderer->canvas;
-  msri_canvas_fill(canvas, renderer->masses, renderer->at, renderer->colour, renderer->stride);
+  if (renderer->at)
+    msri_canvas_complete(canvas, &renderer->colours, renderer->masses, renderer->at);
   for (const stretch *s = renderer->support; s < renderer->support + renderer->n_supports; s++)
-    memset(canvas->pixel + s->first, 0, s->count * sizeof *canvas->pixel);
+    memset(canvas->frame.rgb + 3 * (size_t)s->first, 0, 3 * (size_t)s->count);
 }
 
 const msr_picture *msr_renderer_draw(msr_renderer *renderer, const msr_state *state) {
   msri_renderer_take(renderer, state);
-  paint(renderer);
-  msri_canvas_move(&renderer->canvas, 0, renderer->canvas.height, renderer->frame->rgb);
-  return renderer->frame;
+  complete(renderer);
+  return &renderer->canvas.frame;
 }
 
-/* Some rows at a time, from the fastest cache. All are moved whatever happens, so that the canvas
- * is white. */
+/* Header and pixels. Between pieces who reads a pipe can have his turn. */
+static msr_status write_frame(const msr_picture *frame, msri_file *file, msr_error *err) {
+  enum { PIECE = 1 << 18 };
+  char header[MSRI_PPM_HEADER_SIZE];
+  const size_t n = msri_ppm_header(frame, header), size = n + 3 * frame->width * frame->height;
+  const unsigned char *bytes = memcpy(frame->rgb - n, header, n);
+  msr_status status = MSR_OK;
+  for (size_t at = 0; at < size && status == MSR_OK; at += PIECE)
+    status = msri_file_write(file, bytes + at, size - at < PIECE ? size - at : PIECE, err);
+  return status;
+}
+
+/* Made white again while the next frame isn't waited for. */
 msr_status msri_renderer_write(msr_renderer *renderer, msri_file *file, double *drawing,
                                msr_error *err) {
-  enum { AT_ONCE = 1 << 16 };
-  const size_t line = 3 * renderer->canvas.width, height = renderer->canvas.height;
-  const size_t most = line < AT_ONCE ? AT_ONCE / line : 1;
-  unsigned char *rgb = renderer->frame->rgb;
-  char header[MSRI_PPM_HEADER_SIZE];
-  double start = msri_clock_now();
-  paint(renderer);
-  *drawing += msri_clock_now() - start;
-  msr_status status = msri_file_write(file, header, msri_ppm_header(renderer->frame, header), err);
-  for (size_t row = 0; row < height; row += most) {
-    const size_t count = height - row < most ? height - row : most;
-    start = msri_clock_now();
-    msri_canvas_move(&renderer->canvas, row, count, rgb);
-    *drawing += msri_clock_now() - start;
-    if (status == MSR_OK) status = msri_file_write(file, rgb, count * line, err);
-  }
+  const double start = msri_clock_now();
+  complete(renderer);
+  const double drawn = msri_clock_now();
+  const msr_status status = write_frame(&renderer->canvas.frame, file, err);
+  const double written = msri_clock_now();
+  msri_canvas_whiten(&renderer->canvas);
+  *drawing += drawn - start + msri_clock_now() - written;
   return status;
 }
