@@ -44,7 +44,7 @@ static msri_motion motion_of(uint64_t *dice) {
     m.weight[n] = uniform(dice, -5, 5);
     m.kick[n] = uniform(dice, -0.1, 0.1);
     m.keep[n] = uniform(dice, 0, 1);
-    for (int axis = 0; axis < 2; axis++) m.air[n][axis] = uniform(dice, -4, 4);
+    for (int axis = 0; axis < 2; axis++) m.push[n][axis] = uniform(dice, -4, 4);
   }
   return m;
 }
@@ -109,8 +109,10 @@ static void accelerate(const msri_cells *s, const msri_motion *m, int ways, int 
 
 static double moved(const msri_motion *m, int axis, int besides, double a, double *at, double *v) {
   *v += m->kick[0] * a;
-  for (int n = 0; n < 2 && besides & MSRI_WITH_AIR; n++)
-    *v = m->air[n][axis] + (*v - m->air[n][axis]) * m->keep[n];
+  for (int n = 0; n < 2 && besides & MSRI_WITH_AIR; n++) {
+    *v *= m->keep[n];
+    if (besides & MSRI_WITH_PUSH) *v += m->push[n][axis];
+  }
   *v += m->kick[1] * a;
   *at += m->drift * *v;
   return fabs(*v);

@@ -86,21 +86,22 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
   ADVANCE(target, width, number, 1)                                                                \
   ADVANCE(target, width, number, 2)                                                                \
   ADVANCE(target, width, number, 3)                                                                \
+  ADVANCE(target, width, number, 6)                                                                \
+  ADVANCE(target, width, number, 7)                                                                \
   KICK(target, width, number, 0)                                                                   \
   KICK(target, width, number, 1)                                                                   \
   KICK(target, width, number, 2)                                                                   \
   KICK(target, width, number, 3)                                                                   \
+  KICK(target, width, number, 6)                                                                   \
+  KICK(target, width, number, 7)                                                                   \
   target static void pull_##width##_##number(const msri_cells *s, const msri_motion *motion) {     \
     width(s, motion, &(msri_task){.ways = number, .only_below = true}, &(msri_place){0});          \
   }
+/* By what acts beside the springs: nothing pushes but air. */
+#define ALL(kernel)                                                                                \
+  { kernel##_0, kernel##_1, kernel##_2, kernel##_3, kernel##_0, kernel##_1, kernel##_6, kernel##_7 }
 #define ROW(width, number)                                                                         \
-  {                                                                                                \
-    {advance_##width##_##number##_0, advance_##width##_##number##_1,                               \
-     advance_##width##_##number##_2, advance_##width##_##number##_3},                              \
-        {kick_##width##_##number##_0, kick_##width##_##number##_1, kick_##width##_##number##_2,    \
-         kick_##width##_##number##_3},                                                             \
-        pull_##width##_##number,                                                                   \
-  }
+  { ALL(advance_##width##_##number), ALL(kick_##width##_##number), pull_##width##_##number, }
 
 KERNELS(, go_narrow, BELOW)
 KERNELS(, go_narrow, BESIDE)

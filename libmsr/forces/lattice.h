@@ -29,16 +29,18 @@ typedef struct msri_cells {
   msri_pull below[MSRI_WAYS];      /* [n] and of those that begin there: these are written */
 } msri_cells;
 
-/* What may act beside the springs: a weight, air between the kicks. */
-enum { MSRI_WITH_WEIGHT = 1, MSRI_WITH_AIR = 2, MSRI_BESIDES = 4 };
+/* What may act beside the springs: a weight; air between the kicks, which may push. */
+enum { MSRI_WITH_WEIGHT = 1, MSRI_WITH_AIR = 2, MSRI_WITH_PUSH = 4, MSRI_BESIDES = 8 };
 
 /* What a stage of a step does: forces, kicks, drift (see integrators/splitting.h). */
 typedef struct msri_motion {
-  double L[2];               /* of springs along a side, along a diagonal */
-  double w;                  /* 1 / mass */
-  double weight[2];          /* a force that is the same on each mass */
-  double kick[2], drift;     /* times h */
-  double air[2][2], keep[2]; /* between the kicks twice: v = air + (v - air) keep */
+  double L[2];                /* of springs along a side, along a diagonal */
+  double w;                   /* 1 / mass */
+  double weight[2];           /* a force that is the same on each mass */
+  double kick[2], drift;      /* times h */
+  double keep[2], push[2][2]; /* between the kicks twice: v = keep v + push, along x and y */
+  bool relaxes;               /* else there is no air in this stage */
+  bool pushes;                /* else push is 0, and isn't added */
 } msri_motion;
 
 /* The same by vectors of some width: same bits by each of them. */

@@ -2,7 +2,7 @@
 #include "sweep/field.h"
 
 #include "base/machine.h"
-#include "base/vector.h"
+#include "forces/motion.h"
 
 #include <string.h>
 
@@ -99,8 +99,9 @@ void msri_field_tie(const msri_field *f, const double *marks, const double *belo
 
 double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells) {
   const int eight = pass->ways > MSRI_BELOW + 1;
-  if (stage->forces) return pass->kernel->of[eight].advance[pass->besides](cells, &stage->motion);
-  msri_add_scaled(cells->n, stage->motion.drift, cells->vx, cells->x);
-  msri_add_scaled(cells->n, stage->motion.drift, cells->vy, cells->y);
+  if (stage->forces)
+    return pass->kernel->of[eight].advance[msri_field_besides(pass, stage)](cells, &stage->motion);
+  msri_coast(cells->n, &stage->motion, 0, cells->vx, cells->x);
+  msri_coast(cells->n, &stage->motion, 1, cells->vy, cells->y);
   return 0;
 }

@@ -48,6 +48,13 @@ void msri_field_mark(double *marks, const msri_objects *objects, size_t row, dou
 void msri_field_tie(const msri_field *f, const double *marks, const double *below, int ways,
                     size_t at, size_t width);
 
+/* What acts beside the springs in a stage: which kernel it takes. */
+static inline int msri_field_besides(const msri_pass *pass, const msri_stage *stage) {
+  const msri_motion *m = &stage->motion;
+  const int air = (m->relaxes ? MSRI_WITH_AIR : 0) | (m->pushes ? MSRI_WITH_PUSH : 0);
+  return (pass->besides & ~MSRI_WITH_AIR) | air;
+}
+
 /* Does a stage to cells. Returns the largest velocity along an axis; 0 if they only drift. */
 double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells);
 
