@@ -85,6 +85,7 @@ static const kind kinds[] = {
     {floating, 0, 1, 0, 4, &msr_force_drag, &air, 1, 7},
     {floating, 0, 1, 0, 4, &msr_force_wind, &gusts, 0, 0},
     {floating, 0, 1, 0, 4, &msr_force_wind, &breeze, 0, 0},
+    {several, 9.8, 0.5, 0.2, 4, &msr_force_wind, &gusts, 1, 0},
 };
 
 static void push(const world *w, double vx) { msr_state_edit(w->state).vx[0] += vx; }
@@ -252,32 +253,33 @@ static void slow_ones_go_on(void **unused) {
   close_world(all);
 }
 
-/* Air that is still for a second. */
-static double blow(const void *self, void *scratch, const msr_view *s, double h, double *u) {
+/* Air that is still for a second, along both axes. */
+static double air_then(const msr_view *s) { return s->t < 1 ? 0 : 2; }
+
+static double blow(const void *self, void *scratch, const msr_view *s, double h, double *push) {
   (void)self, (void)scratch;
-  u[0] = u[1] = s->t < 1 ? 0 : 2;
+  push[0] = push[1] = (1 - exp(-h)) * air_then(s);
   return exp(-h);
 }
 
 static msr_status push_later(const void *self, void *scratch, const msr_view *s, double *fx,
                              double *fy) {
-  double u[2];
-  blow(self, scratch, s, 0, u);
+  (void)self, (void)scratch;
   for (size_t i = 0; i < s->n; i++) {
-    fx[i] += msr_view_mass(s, i) * (u[0] - s->vx[i]);
-    fy[i] += msr_view_mass(s, i) * (u[1] - s->vy[i]);
+    fx[i] += msr_view_mass(s, i) * (air_then(s) - s->vx[i]);
+    fy[i] += msr_view_mass(s, i) * (air_then(s) - s->vy[i]);
   }
   return MSR_OK;
 }
 
 static msr_status flow_later(const void *self, void *scratch, const msr_view *s, double h,
                              bool backward, double *vx, double *vy) {
-  double u[2];
-  const double keep = blow(self, scratch, s, h, u);
+  double push[2];
+  const double keep = blow(self, scratch, s, h, push);
   (void)backward;
   for (size_t i = 0; i < s->n; i++) {
-    vx[i] = u[0] + (vx[i] - u[0]) * keep;
-    vy[i] = u[1] + (vy[i] - u[1]) * keep;
+    vx[i] = keep * vx[i] + push[0];
+    vy[i] = keep * vy[i] + push[1];
   }
   return MSR_OK;
 }

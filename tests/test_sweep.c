@@ -245,6 +245,33 @@ static void runs_may_be_cut(void **state) {
   }
 }
 
+/* Two states of a plan, one ahead of the other and then put back, in gusts: what their forces
+ * remember shows in neither. */
+static void states_of_a_plan_know_nothing_of_each_other(void **state) {
+  (void)state;
+  for (uint64_t n = 0; n < 7; n++)
+    for (unsigned threads = 0; threads < 2; threads++) {
+      const trial t = {&shapes[0], 9, 7, 1, 4, WIND, 9.8, 0.01, splitting(n), 1, n};
+      world w = open_by(&t, threads), alone = open_by(&t, threads);
+      msr_state *ahead;
+      must(msr_state_create(w.plan, &ahead, &why));
+      msr_state_copy(ahead, w.state);
+      advance(&alone, STEPS);
+      for (int turn = 0; turn < 2; turn++) {
+        must(msr_state_step(ahead, 30, &why));
+        advance(&w, 1);
+        msr_state_copy(ahead, w.state);
+      }
+      must(msr_state_step(ahead, STEPS - 2, &why));
+      for (int step = 2; step < STEPS; step++) advance(&w, 1);
+      assert_true(msr_state_hash(ahead) == msr_state_hash(alone.state));
+      assert_true(msr_state_hash(w.state) == msr_state_hash(alone.state));
+      msr_state_free(ahead);
+      close_world(w);
+      close_world(alone);
+    }
+}
+
 /* ---- What is counted */
 
 static uint64_t calls_of(const world *w, const char *name) {
@@ -260,8 +287,9 @@ static uint64_t calls_of(const world *w, const char *name) {
  * the places. */
 static void work_is_counted(void **state) {
   (void)state;
-  for (uint64_t n = 0; n < 7; n++) {
-    const trial t = {&shapes[0], 20, 30, 1, 4, STILL, 9.8, 0.01, splitting(n), 2, n};
+  for (uint64_t n = 0; n < 14; n++) {
+    const int air = n % 2 ? DRAG : STILL;
+    const trial t = {&shapes[0], 20, 30, 1, 4, air, 9.8, 0.01, splitting(n / 2), 2, n};
     world is = open_by(&t, 2), due = open_by(&t, 0);
     for (int call = 0; call < 3; call++) advance(&is, 10), advance(&due, 10);
     const msr_work work = msr_state_work(is.state), wanted = msr_state_work(due.state);
@@ -446,6 +474,7 @@ int main(void) {
       cmocka_unit_test(methods_have_the_same_bits),
       cmocka_unit_test(many_substeps_have_the_same_bits),
       cmocka_unit_test(runs_may_be_cut),
+      cmocka_unit_test(states_of_a_plan_know_nothing_of_each_other),
       cmocka_unit_test(work_is_counted),
       cmocka_unit_test(explosions_are_told),
       cmocka_unit_test(crushes_go_on_with_care),

@@ -206,6 +206,46 @@ static void air_does_not_depend_on_who_asks_when(void **state) {
   dismiss(&one_after_another);
 }
 
+/* Within a spacing of the grid, on either side of it and across blocks, back and forth: whatever
+ * was asked before. */
+static void air_does_not_depend_on_what_was_asked_before(void **state) {
+  (void)state;
+  const double borders[] = {0, 5 * spacing, block, -block};
+  actor old = air_of(&gusty);
+  uint64_t dice = 7;
+  for (int ask = 0; ask < 400; ask++) {
+    const double t =
+        borders[random_below(&dice, LENGTH(borders))] + uniform(&dice, -2 * spacing, 2 * spacing);
+    actor fresh = air_of(&gusty);
+    const vector is = air(&old, t), due = air(&fresh, t), again = air(&old, t);
+    check_same_air(&is, &due, t);
+    check_same_air(&again, &due, t);
+    dismiss(&fresh);
+  }
+  dismiss(&old);
+}
+
+/* What a flow does to velocities: by both of its ways, after others of other times and steps. */
+static void relaxing_is_flowing(void **state) {
+  (void)state;
+  const msr_drag drag = {0.3};
+  actor winds[] = {air_of(&gusty), prepare(&msr_force_drag, &drag, &alone)};
+  const double masses[] = {1, 0.2};
+  uint64_t dice = 3;
+  for (int ask = 0; ask < 200; ask++) {
+    const actor *a = &winds[ask % 2];
+    const double h = ask % 5 ? 0.01 : uniform(&dice, -0.5, 0.5), before = uniform(&dice, -9, 9);
+    double vx = before, vy = -before, push[2];
+    msr_view s = alone;
+    s.t = uniform(&dice, 0, 1);
+    s.m = &masses[random_below(&dice, 2)];
+    const double keep = a->force->relax(a->self, a->scratch, &s, h, push);
+    must(a->force->flow(a->self, a->scratch, &s, h, false, &vx, &vy));
+    assert_true(vx == keep * before + push[0] && vy == keep * -before + push[1]);
+  }
+  for (size_t n = 0; n < LENGTH(winds); n++) dismiss(&winds[n]);
+}
+
 /* Far away it still varies: it isn't one value held, nor periodic with the blocks. */
 static void air_varies_everywhere(void **state) {
   (void)state;
@@ -288,6 +328,8 @@ int main(void) {
       cmocka_unit_test(blocks_join),
       cmocka_unit_test(wind_is_smooth_to_the_sixth_derivative),
       cmocka_unit_test(air_does_not_depend_on_who_asks_when),
+      cmocka_unit_test(air_does_not_depend_on_what_was_asked_before),
+      cmocka_unit_test(relaxing_is_flowing),
       cmocka_unit_test(air_varies_everywhere),
       cmocka_unit_test(all_integrators_feel_one_wind),
       cmocka_unit_test(steady_wind_draws_nothing),

@@ -10,18 +10,27 @@ void msri_air_add(const msri_air *air, const msr_view *s, double *fx, double *fy
   }
 }
 
+static double keep_of(const msri_air *air, double h, double m) { return exp(-air->c * h / m); }
+
 void msri_air_flow(const msri_air *air, const msr_view *s, double h, double *vx, double *vy) {
-  double keep = s->n > 0 ? exp(-air->c * h / s->m[0]) : 1;
+  const bool still = air->ax == 0 && air->ay == 0;
+  double keep = s->n > 0 ? keep_of(air, h, s->m[0]) : 1;
   for (size_t i = 0; i < s->n; i++) {
-    if (s->m_stride) keep = exp(-air->c * h / s->m[i]);
-    vx[i] = air->ax + (vx[i] - air->ax) * keep;
-    vy[i] = air->ay + (vy[i] - air->ay) * keep;
+    if (s->m_stride) keep = keep_of(air, h, s->m[i]);
+    vx[i] *= keep, vy[i] *= keep;
+    if (still) continue;
+    vx[i] += (1 - keep) * air->ax;
+    vy[i] += (1 - keep) * air->ay;
   }
 }
 
-double msri_air_relax(const msri_air *air, const msr_view *s, double h, double *u) {
-  u[0] = air->ax, u[1] = air->ay;
-  return exp(-air->c * h / s->m[0]);
+double msri_air_relax(const msri_air *air, const msr_view *s, double h, msri_air_decay *last,
+                      double *push) {
+  const double m = s->m[0];
+  if (last->h != h || last->m != m) *last = (msri_air_decay){h, m, keep_of(air, h, m)};
+  push[0] = (1 - last->keep) * air->ax;
+  push[1] = (1 - last->keep) * air->ay;
+  return last->keep;
 }
 
 double msri_air_rate(double c, const msr_view *s) {

@@ -40,10 +40,9 @@ static msr_status flow(const void *self, void *scratch, const msr_view *s, doubl
   return MSR_OK;
 }
 
-static double relax(const void *self, void *scratch, const msr_view *s, double h, double *u) {
-  (void)scratch;
+static double relax(const void *self, void *scratch, const msr_view *s, double h, double *push) {
   const msri_air air = still(self);
-  return msri_air_relax(&air, s, h, u);
+  return msri_air_relax(&air, s, h, scratch, push);
 }
 
 static msr_status rates(const void *self, const msr_view *s, double *omega2, double *gamma) {
@@ -59,6 +58,7 @@ const msr_force msr_force_drag = {
     .uses_velocity = true,
     .ignores_start = true,
     .params_size = sizeof(msr_drag),
+    .scratch_size = sizeof(msri_air_decay),
     .check = check,
     .idle = idle,
     .describe = describe,
@@ -67,5 +67,5 @@ const msr_force msr_force_drag = {
     .rates = rates,
     .relax = relax,
     .add_load = {.mass = 6, .mass_bytes = 48},
-    .flow_load = {.mass = 6, .mass_bytes = 32},
+    .flow_load = {.mass = 2, .mass_bytes = 32},
 };

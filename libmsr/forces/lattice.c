@@ -15,7 +15,6 @@ typedef struct place {
 typedef struct msri_task {
   int ways; /* of springs, from MSRI_RIGHT on */
   int besides;
-  bool tells;      /* the largest velocity along an axis */
   double *ax, *ay; /* [n]: accelerations go here, and cells do not drift; NULL: they do */
 } msri_task;
 
@@ -43,46 +42,35 @@ typedef struct msri_task {
 enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
 
 /* The kernels of one width, for some number of ways. */
-#define ADVANCE(target, width, number, told, with)                                                 \
-  target static double advance_##width##_##number##_##told##_##with(const msri_cells *s,           \
-                                                                    const msri_motion *motion) {   \
-    return go_##width(s, motion, &(msri_task){.ways = number, .besides = with, .tells = told});    \
+#define ADVANCE(target, width, number, with)                                                       \
+  target static void advance_##width##_##number##_##with(const msri_cells *s,                      \
+                                                         const msri_motion *motion) {              \
+    go_##width(s, motion, &(msri_task){.ways = number, .besides = with});                          \
   }
 #define KICK(target, width, number, with)                                                          \
   target static double kick_##width##_##number##_##with(                                           \
       const msri_cells *s, const msri_motion *motion, double *ax, double *ay) {                    \
-    return go_##width(                                                                             \
-        s, motion,                                                                                 \
-        &(msri_task){.ways = number, .besides = with, .tells = true, .ax = ax, .ay = ay});         \
+    return go_##width(s, motion,                                                                   \
+                      &(msri_task){.ways = number, .besides = with, .ax = ax, .ay = ay});          \
   }
+#define BOTH(target, width, number, with)                                                          \
+  ADVANCE(target, width, number, with)                                                             \
+  KICK(target, width, number, with)
 #define KERNELS(target, width, number)                                                             \
-  ADVANCE(target, width, number, 0, 0)                                                             \
-  ADVANCE(target, width, number, 0, 1)                                                             \
-  ADVANCE(target, width, number, 0, 2)                                                             \
-  ADVANCE(target, width, number, 0, 3)                                                             \
-  ADVANCE(target, width, number, 1, 0)                                                             \
-  ADVANCE(target, width, number, 1, 1)                                                             \
-  ADVANCE(target, width, number, 1, 2)                                                             \
-  ADVANCE(target, width, number, 1, 3)                                                             \
-  KICK(target, width, number, 0)                                                                   \
-  KICK(target, width, number, 1)                                                                   \
-  KICK(target, width, number, 2)                                                                   \
-  KICK(target, width, number, 3)                                                                   \
+  BOTH(target, width, number, 0)                                                                   \
+  BOTH(target, width, number, 1)                                                                   \
+  BOTH(target, width, number, 2)                                                                   \
+  BOTH(target, width, number, 3)                                                                   \
+  BOTH(target, width, number, 6)                                                                   \
+  BOTH(target, width, number, 7)                                                                   \
   target static void pull_##width##_##number(const msri_cells *s, const msri_motion *motion) {     \
     look_below_##width(s, motion, number);                                                         \
   }
-#define ADVANCES(width, number, told)                                                              \
-  {                                                                                                \
-    advance_##width##_##number##_##told##_0, advance_##width##_##number##_##told##_1,              \
-        advance_##width##_##number##_##told##_2, advance_##width##_##number##_##told##_3           \
-  }
+/* By what acts beside the springs: nothing pushes but air. */
+#define ALL(kernel)                                                                                \
+  { kernel##_0, kernel##_1, kernel##_2, kernel##_3, kernel##_0, kernel##_1, kernel##_6, kernel##_7 }
 #define ROW(width, number)                                                                         \
-  {                                                                                                \
-    {ADVANCES(width, number, 0), ADVANCES(width, number, 1)},                                      \
-        {kick_##width##_##number##_0, kick_##width##_##number##_1, kick_##width##_##number##_2,    \
-         kick_##width##_##number##_3},                                                             \
-        pull_##width##_##number,                                                                   \
-  }
+  { ALL(advance_##width##_##number), ALL(kick_##width##_##number), pull_##width##_##number, }
 
 #if MSRI_WIDE
 KERNELS(MSRI_AVX512, 8, BELOW)

@@ -39,16 +39,18 @@ typedef struct msri_cells {
   ptrdiff_t back[MSRI_WAYS];
 } msri_cells;
 
-/* What may act beside the springs: a weight, air between the kicks. */
-enum { MSRI_WITH_WEIGHT = 1, MSRI_WITH_AIR = 2, MSRI_BESIDES = 4 };
+/* What may act beside the springs: a weight; air between the kicks, which may push. */
+enum { MSRI_WITH_WEIGHT = 1, MSRI_WITH_AIR = 2, MSRI_WITH_PUSH = 4, MSRI_BESIDES = 8 };
 
 /* What a stage of a step does: forces, kicks, drift (see integrators/splitting.h). */
 typedef struct msri_motion {
-  double k, L[2];            /* of springs: along a side, along a diagonal */
-  double w;                  /* 1 / mass */
-  double weight[2];          /* a force that is the same on each mass */
-  double kick[2], drift;     /* times h */
-  double air[2][2], keep[2]; /* between the kicks twice: v = air + (v - air) keep */
+  double k, L[2];             /* of springs: along a side, along a diagonal */
+  double w;                   /* 1 / mass */
+  double weight[2];           /* a force that is the same on each mass */
+  double kick[2], drift;      /* times h */
+  double keep[2], push[2][2]; /* between the kicks twice: v = keep v + push, along x and y */
+  bool relaxes;               /* else there is no air in this stage */
+  bool pushes;                /* else push is 0, and isn't added */
 } msri_motion;
 
 /* The same by vectors of some width: same bits by each of them. */
@@ -56,10 +58,10 @@ typedef struct msri_lattice_kernel {
   const char *name;
   bool (*runs_here)(void); /* has this machine got such vectors? NULL: every one has */
   struct {
-    /* Forces, then kick, kick, drift; by what acts beside the springs. Returns the largest
-     * velocity along an axis, NaN if one is, if it's asked for; else 0. */
-    double (*advance[2][MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
-    /* The same without the drift, and asked; accelerations go to ax, ay [n], those of the blocks.
+    /* Forces, then kick, kick, drift; by what acts beside the springs. */
+    void (*advance[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
+    /* The same without the drift. Returns the largest velocity along an axis; NaN if one is.
+     * Accelerations go to ax, ay [n], those of the blocks.
      */
     double (*kick[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion, double *ax,
                                  double *ay);

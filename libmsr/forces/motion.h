@@ -15,4 +15,7 @@ typedef struct msri_moved {
  * velocity; NaN if one is. */
 double msri_move(const msri_moved *moved, const msri_motion *motion, int axis, int besides);
 
+/* The same without forces: velocities relax in air, if there is any, and drift. v, q [n]. */
+void msri_coast(size_t n, const msri_motion *motion, int axis, double *v, double *q);
+
 #endif

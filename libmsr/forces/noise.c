@@ -12,8 +12,9 @@
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
+#include <string.h>
 
-enum { GRID = 16, DEGREE = 7, POINTS = DEGREE + 1 };
+enum { GRID = 16, POINTS = MSRI_NOISE_POINTS, DEGREE = POINTS - 1 };
 
 /* SplitMix64's finaliser (Steele, Lea & Flood 2014): neighbouring inputs give unrelated outputs. */
 static uint64_t mix(uint64_t z) {
@@ -52,22 +53,33 @@ static void grid_point(const msri_noise *noise, msri_noise_cache *cache, int64_t
   *y = cache->y[slot][inside];
 }
 
-/* Weights of the grid points k-3 .. k+4 at k+u, 0 <= u < 1 (de Boor's recurrence). */
-static void spline(double u, double w[POINTS]) {
-  w[0] = 1;
-  for (int d = 1; d <= DEGREE; d++) {
-    w[d] = u / d * w[d - 1];
-    for (int j = d - 1; j > 0; j--) w[j] = ((u + d - j) * w[j - 1] + (j + 1 - u) * w[j]) / d;
-    w[0] *= (1 - u) / d;
-  }
+/* Weights of the grid points k-3 .. k+4 at k+u, 0 <= u < 1, by de Boor's recurrence
+ *
+ *     w[j] of degree d = ((u + d - j) w[j-1] + (j + 1 - u) w[j]) / d of degree d - 1. */
+static void find_weights(msri_noise_curve *w) {
+  memset(w, 0, POINTS * sizeof *w);
+  w[0].c[0] = 1;
+  for (int d = 1; d <= DEGREE; d++)
+    for (int j = d; j >= 0; j--)
+      for (int i = d; i >= 0; i--) {
+        double sum = (j + 1) * w[j].c[i] - (i > 0 ? w[j].c[i - 1] : 0);
+        if (j > 0) sum += (d - j) * w[j - 1].c[i] + (i > 0 ? w[j - 1].c[i - 1] : 0);
+        w[j].c[i] = sum / d;
+      }
+}
+
+static double value(const msri_noise_curve *curve, double u) {
+  double sum = curve->c[DEGREE];
+  for (int i = DEGREE - 1; i >= 0; i--) sum = sum * u + curve->c[i];
+  return sum;
 }
 
 /* The interpolated chain's own variance is a little below 1: averaged over a cell. */
-static double spline_variance(void) {
+static double spline_variance(const msri_noise_curve *weight) {
   enum { SAMPLES = 32 };
   double sum = 0, w[POINTS];
   for (int s = 0; s < SAMPLES; s++) {
-    spline((s + 0.5) / SAMPLES, w);
+    for (int i = 0; i < POINTS; i++) w[i] = value(&weight[i], (s + 0.5) / SAMPLES);
     for (int i = 0; i < POINTS; i++)
       for (int j = 0; j < POINTS; j++) sum += w[i] * w[j] * exp(-fabs((double)(i - j)) / GRID);
   }
@@ -75,30 +87,33 @@ static double spline_variance(void) {
 }
 
 msri_noise msri_noise_of(double deviation, double time, uint64_t seed) {
-  return (msri_noise){time, deviation / sqrt(spline_variance()), seed};
+  msri_noise noise = {.time = time, .seed = seed};
+  find_weights(noise.weight);
+  noise.scale = deviation / sqrt(spline_variance(noise.weight));
+  return noise;
 }
 
-static void interpolate(const msri_noise *noise, msri_noise_cache *cache, double t, double *x,
-                        double *y) {
-  const double most = 0x1p52, asked = t / noise->time * GRID;
-  const double at = msri_max(-most, msri_min(asked, most)), k = floor(at);
-  double w[POINTS], px, py;
-  spline(at - k, w);
-  *x = *y = 0;
+static void open_cell(const msri_noise *noise, msri_noise_cache *cache, double k) {
+  msri_noise_curve *const at_x = &cache->at_x, *const at_y = &cache->at_y;
+  memset(at_x, 0, sizeof *at_x);
+  memset(at_y, 0, sizeof *at_y);
   for (int j = 0; j < POINTS; j++) {
-    grid_point(noise, cache, (int64_t)k + j - DEGREE / 2, &px, &py);
-    *x += w[j] * px;
-    *y += w[j] * py;
+    double x, y;
+    grid_point(noise, cache, (int64_t)k + j - DEGREE / 2, &x, &y);
+    for (int i = 0; i < POINTS; i++) {
+      at_x->c[i] += noise->scale * x * noise->weight[j].c[i];
+      at_y->c[i] += noise->scale * y * noise->weight[j].c[i];
+    }
   }
-  *x *= noise->scale;
-  *y *= noise->scale;
+  cache->known = true;
+  cache->k = k;
 }
 
 void msri_noise_at(const msri_noise *noise, msri_noise_cache *cache, double t, double *x,
                    double *y) {
-  if (!cache->known || cache->t != t) interpolate(noise, cache, t, &cache->at_x, &cache->at_y);
-  cache->known = true;
-  cache->t = t;
-  *x = cache->at_x;
-  *y = cache->at_y;
+  const double most = 0x1p52, asked = t / noise->time * GRID;
+  const double at = msri_max(-most, msri_min(asked, most)), k = floor(at);
+  if (!cache->known || cache->k != k) open_cell(noise, cache, k);
+  *x = value(&cache->at_x, at - k);
+  *y = value(&cache->at_y, at - k);
 }

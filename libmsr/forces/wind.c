@@ -16,6 +16,12 @@ typedef struct wind {
   msri_noise noise;
 } wind;
 
+/* In each state. */
+typedef struct memory {
+  msri_air_decay decay;
+  msri_noise_cache noise;
+} memory;
+
 /* Gusts of shorter correlation are noise that no step could follow. */
 static const double shortest = 1e-6; /* [s] */
 
@@ -74,7 +80,7 @@ static msr_status prepare(const void *params, const msr_view *s, void **self, ms
 /* The air at time t. */
 static msri_air air_at(const wind *w, void *scratch, double t) {
   msri_air air = {w->c, 0, 0};
-  if (w->gusts) msri_noise_at(&w->noise, scratch, t, &air.ax, &air.ay);
+  if (w->gusts) msri_noise_at(&w->noise, &((memory *)scratch)->noise, t, &air.ax, &air.ay);
   air.ax += w->speed;
   return air;
 }
@@ -93,9 +99,9 @@ static msr_status flow(const void *self, void *scratch, const msr_view *s, doubl
   return MSR_OK;
 }
 
-static double relax(const void *self, void *scratch, const msr_view *s, double h, double *u) {
+static double relax(const void *self, void *scratch, const msr_view *s, double h, double *push) {
   const msri_air air = air_at(self, scratch, s->t);
-  return msri_air_relax(&air, s, h, u);
+  return msri_air_relax(&air, s, h, &((memory *)scratch)->decay, push);
 }
 
 static msr_status rates(const void *self, const msr_view *s, double *omega2, double *gamma) {
@@ -117,7 +123,7 @@ const msr_force msr_force_wind = {
     .uses_time = true,
     .ignores_start = true,
     .params_size = sizeof(msr_wind),
-    .scratch_size = sizeof(msri_noise_cache),
+    .scratch_size = sizeof(memory),
     .check = check,
     .idle = idle,
     .describe = describe,
@@ -129,5 +135,5 @@ const msr_force msr_force_wind = {
     .relax = relax,
     .power = power,
     .add_load = {.mass = 6, .mass_bytes = 48},
-    .flow_load = {.mass = 6, .mass_bytes = 32},
+    .flow_load = {.mass = 4, .mass_bytes = 32},
 };

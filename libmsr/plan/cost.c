@@ -29,9 +29,10 @@ static msr_load swept_springs(const msr_plan *plan) {
   return (msr_load){.spring = 15, .mass_bytes = 16 + 32 * (ways - 1) + 8 * ways};
 }
 
-/* A weight is added to both coordinates, v = air + (v - air) keep twice, where v is at hand. */
+/* A weight is added to both coordinates; a flow v = keep v + push takes 4 unless it tells, where v
+ * is at hand, but for drifts without forces, before which v is read and written. */
 static const msr_load swept_weight = {.mass = 2};
-static const msr_load swept_air = {.mass = 12};
+static const msr_load swept_flow = {.mass = 4}, swept_coast = {.mass_bytes = 32};
 
 /* f / m 2, two kicks 8, a drift 4: x, y, vx, vy are read and written. Where supports see to the
  * drift a is written for them. */
@@ -69,16 +70,25 @@ static bool told(const msr_load *l) {
   return l->call + l->mass + l->spring + l->call_bytes + l->mass_bytes + l->spring_bytes > 0;
 }
 
-/* Air is there at each evaluation, even if it's called for no more than twice a step. */
+static double coasts(const msr_plan *plan) {
+  return msri_splitting_drifts(plan->figures.integrator) - evaluations(plan);
+}
+
+static msr_cost cost_of_swept_air(const msr_plan *plan, const msr_force *force) {
+  const double calls = msri_force_calls(force, plan->figures.integrator, evaluations(plan));
+  const msr_load own = {.mass = force->flow_load.mass};
+  msr_cost cost = {0};
+  add(plan, calls, told(&force->flow_load) ? &own : &swept_flow, &cost);
+  add(plan, coasts(plan), &swept_coast, &cost);
+  cost.calls = calls;
+  return cost;
+}
+
 static msr_cost cost_of_swept_force(const msr_plan *plan, const msr_force *force) {
   const msr_load springs_load = swept_springs(plan);
   msr_cost cost = {0};
-  add(plan, evaluations(plan),
-      force->uniform ? &swept_weight
-      : force->relax ? &swept_air
-                     : &springs_load,
-      &cost);
-  cost.calls = msri_force_calls(force, plan->figures.integrator, evaluations(plan));
+  if (force->relax) return cost_of_swept_air(plan, force);
+  add(plan, evaluations(plan), force->uniform ? &swept_weight : &springs_load, &cost);
   return cost;
 }
 
@@ -94,10 +104,9 @@ static msr_cost cost_of_force(const msr_plan *plan, const msr_force *force) {
 
 /* A drift without forces before it is by itself. */
 static void add_swept_steps(const msr_plan *plan, msr_cost *cost) {
-  const double drifts = msri_splitting_drifts(plan->figures.integrator);
   const bool meets = msri_plan_meets(plan);
   add(plan, evaluations(plan), meets ? &swept_kicks : &swept_stage, cost);
-  if (!meets) add(plan, drifts - evaluations(plan), &free_drift, cost);
+  if (!meets) add(plan, coasts(plan), &free_drift, cost);
 }
 
 /* One drift, or one look back, a step; of what is met only the least is known. */

@@ -104,16 +104,17 @@ static void move(wave *w, int stage, size_t band) {
   const bool more = bands->n > 1;
   const msri_moved x = {n, s->x + first, s->vx + first, fx, more ? fx + bands->length : NULL};
   const msri_moved y = {n, s->y + first, s->vy + first, fy, more ? fy + bands->length : NULL};
-  w->fastest = msri_worse(msri_move(&x, motion, 0, w->pass->besides), w->fastest);
-  w->fastest = msri_worse(msri_move(&y, motion, 1, w->pass->besides), w->fastest);
+  const int besides = msri_field_besides(w->pass, &w->pass->stage[stage]);
+  w->fastest = msri_worse(msri_move(&x, motion, 0, besides), w->fastest);
+  w->fastest = msri_worse(msri_move(&y, motion, 1, besides), w->fastest);
 }
 
 static void drift(const wave *w, int stage, size_t band) {
   const msri_swept *s = w->pass->state;
-  const double h = w->pass->stage[stage].motion.drift;
+  const msri_motion *motion = &w->pass->stage[stage].motion;
   const size_t first = band * w->bands->length, n = msri_bands_masses(w->bands, band);
-  msri_add_scaled(n, h, s->vx + first, s->x + first);
-  msri_add_scaled(n, h, s->vy + first, s->y + first);
+  msri_coast(n, motion, 0, s->vx + first, s->x + first);
+  msri_coast(n, motion, 1, s->vy + first, s->y + first);
 }
 
 static void step_band(wave *w, int stage, size_t band) {

@@ -2,8 +2,9 @@
 #include "sweep/field.h"
 
 #include "base/machine.h"
-#include "base/vector.h"
+#include "forces/motion.h"
 
+#include <math.h>
 #include <string.h>
 
 /* ---- Memory: x, y, vx, vy, each with what is around it; blocks and how many there are */
@@ -137,11 +138,26 @@ void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
 
 /* ---- Steps */
 
+/* Along an axis; what is no number is the fastest. */
+static double fastest_of(const msri_cells *cells) {
+  double fastest = 0;
+  for (size_t b = 0; b < cells->blocks; b++) {
+    size_t c = cells->block[b].cell;
+    for (unsigned mass = cells->block[b].mass; mass > 0; mass /= 2, c++)
+      if (mass % 2)
+        fastest = msri_worse(msri_worse(fabs(cells->vx[c]), fabs(cells->vy[c])), fastest);
+  }
+  return fastest;
+}
+
 double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells) {
-  const int eight = pass->ways > MSRI_BELOW + 1;
-  if (stage->forces)
-    return pass->kernel->of[eight].advance[stage->tells][pass->besides](cells, &stage->motion);
-  msri_add_scaled(cells->n, stage->motion.drift, cells->vx, cells->x);
-  msri_add_scaled(cells->n, stage->motion.drift, cells->vy, cells->y);
-  return 0;
+  const msri_motion *motion = &stage->motion;
+  if (stage->forces) {
+    const int eight = pass->ways > MSRI_BELOW + 1;
+    pass->kernel->of[eight].advance[msri_field_besides(pass, stage)](cells, motion);
+  } else {
+    msri_coast(cells->n, motion, 0, cells->vx, cells->x);
+    msri_coast(cells->n, motion, 1, cells->vy, cells->y);
+  }
+  return stage->tells ? fastest_of(cells) : 0;
 }

@@ -62,6 +62,13 @@ void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
 /* The cells of a field, without those below them and what they pull. */
 msri_cells msri_field_cells(const msri_field *f);
 
+/* What acts beside the springs in a stage: which kernel it takes. */
+static inline int msri_field_besides(const msri_pass *pass, const msri_stage *stage) {
+  const msri_motion *m = &stage->motion;
+  const int air = (m->relaxes ? MSRI_WITH_AIR : 0) | (m->pushes ? MSRI_WITH_PUSH : 0);
+  return (pass->besides & ~MSRI_WITH_AIR) | air;
+}
+
 /* Does a stage to cells. Returns the largest velocity along an axis, if the stage tells; else 0. */
 double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells);
 

@@ -18,10 +18,10 @@ msri_meet msri_meet_place(size_t cells, size_t masses, double *memory, msri_tall
 /* ---- Kicks */
 
 /* What a kernel does to a velocity. */
-static double kicked(const msri_pass *pass, const msri_motion *m, int axis, double v, double a) {
+static double kicked(const msri_motion *m, int axis, double v, double a) {
   v = v + m->kick[0] * a;
-  for (int n = 0; n < 2 && (pass->besides & MSRI_WITH_AIR); n++)
-    v = m->air[n][axis] + (v - m->air[n][axis]) * m->keep[n];
+  for (int n = 0; n < 2 && m->relaxes; n++)
+    v = m->pushes ? m->keep[n] * v + m->push[n][axis] : m->keep[n] * v;
   return v + m->kick[1] * a;
 }
 
@@ -35,13 +35,14 @@ double msri_meet_kick(const msri_pass *pass, const msri_stage *stage, const msri
     meet->before[2 * d] = cells->vx[debts->debt[d].mass];
     meet->before[2 * d + 1] = cells->vy[debts->debt[d].mass];
   }
-  double fastest = pass->kernel->of[eight].kick[pass->besides](cells, m, meet->ax, meet->ay);
+  double fastest =
+      pass->kernel->of[eight].kick[msri_field_besides(pass, stage)](cells, m, meet->ax, meet->ay);
   for (size_t d = 0; d < debts->n; d++) {
     const msri_debt *debt = &debts->debt[d];
     const size_t c = debt->mass;
     const double ax = meet->ax[c], ay = meet->ay[c];
-    cells->vx[c] = kicked(pass, m, 0, meet->before[2 * d] + debt->x * ax, ax);
-    cells->vy[c] = kicked(pass, m, 1, meet->before[2 * d + 1] + debt->y * ay, ay);
+    cells->vx[c] = kicked(m, 0, meet->before[2 * d] + debt->x * ax, ax);
+    cells->vy[c] = kicked(m, 1, meet->before[2 * d + 1] + debt->y * ay, ay);
     fastest = msri_worse(msri_worse(fabs(cells->vx[c]), fabs(cells->vy[c])), fastest);
   }
   debts->n = 0;

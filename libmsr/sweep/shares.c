@@ -9,6 +9,7 @@
 #include "sweep/patch.h"
 
 #include <math.h>
+#include <string.h>
 
 enum {
   CELLS = 4096, /* that a kernel is timed on: the same ones again, if there are fewer */
@@ -71,7 +72,7 @@ static void run(const subject *s, int which) {
   else if (s->pass->meets)
     kernel->of[eight].kick[which](&s->cells, &s->motion, s->a, s->a + s->cells.n);
   else
-    kernel->of[eight].advance[0][which](&s->cells, &s->motion);
+    kernel->of[eight].advance[which](&s->cells, &s->motion);
 }
 
 /* Of once all cells. */
@@ -96,18 +97,19 @@ static msri_motion at_rest(const msri_pass *pass) {
   msri_motion m = pass->stage[0].motion;
   m.kick[0] = m.kick[1] = m.drift = 0;
   m.keep[0] = m.keep[1] = 1;
+  memset(m.push, 0, sizeof m.push);
   return m;
 }
 
 /* Adds shares of a pass: `took` of each kernel once, `copying` of what is before and after it. */
 static void add(msri_shares *s, const msri_pass *pass, const double *took, double copying) {
-  const int weight = pass->besides & MSRI_WITH_WEIGHT;
+  const int besides = msri_field_besides(pass, pass->stage), weight = besides & MSRI_WITH_WEIGHT;
   const double ways = pass->ways, bare = took[0], heavy = fmax(bare, took[weight]);
   double forces = 0, part[MSRI_SHARES], all = 0;
   for (int n = 0; n < pass->stages; n++) forces += pass->stage[n].forces;
   part[MSRI_SHARE_SPRINGS] = forces * fmin(bare, took[PULL] * ways / (ways - MSRI_BELOW));
   part[MSRI_SHARE_WEIGHT] = forces * (heavy - bare);
-  part[MSRI_SHARE_AIR] = forces * fmax(0, took[pass->besides] - heavy);
+  part[MSRI_SHARE_AIR] = forces * fmax(0, took[besides] - heavy);
   part[MSRI_SHARE_MOTION] = pass->stages * bare - part[MSRI_SHARE_SPRINGS] + copying;
   for (int n = 0; n < MSRI_SHARES; n++) all += part[n];
   for (int n = 0; n < MSRI_SHARES; n++) s->share[n] += part[n] / all;

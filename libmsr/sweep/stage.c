@@ -3,8 +3,6 @@
  * course end with a stage without a drift. */
 #include "sweep/stage.h"
 
-#include "integrators/splitting.h"
-
 /* The joints of a stage: the end of a step, the beginning or the inside of another. */
 typedef struct joints {
   int n;
@@ -25,63 +23,80 @@ uint64_t msri_course_stages(const msri_course *c) {
   return c->steps * (uint64_t)drifts_of(c) + ends;
 }
 
-static joints joints_of(const msri_course *c, uint64_t k) {
+/* Of drift j of a step, if there is one before, or none any more. */
+static joints joints_of(const msri_course *c, uint64_t step, int j) {
   const msr_integrator *integrator = c->plan->figures.integrator;
-  const int drifts = drifts_of(c), j = (int)(k % (uint64_t)drifts);
-  const msri_joint end = msri_splitting_joint(integrator, drifts);
+  const msri_joint end = msri_splitting_joint(integrator, drifts_of(c));
   joints at = {0};
-  if (j == 0 && k > 0 && acts(&end)) at.at[at.n++] = end;
-  if (k < c->steps * (uint64_t)drifts) at.at[at.n++] = msri_splitting_joint(integrator, j);
+  if (j == 0 && step > 0 && acts(&end)) at.at[at.n++] = end;
+  if (step < c->steps) at.at[at.n++] = msri_splitting_joint(integrator, j);
   return at;
 }
 
-/* The time of a stage, as a step by itself would have it. */
-static double time_of(const msri_course *c, uint64_t k) {
+/* The time before drift j of a step, as a step by itself would have it. */
+static double time_of(const msri_course *c, uint64_t step, int j) {
   const msr_plan_figures *f = &c->plan->figures;
-  const uint64_t drifts = (uint64_t)drifts_of(c), substep = c->substep + k / drifts;
-  const uint64_t iteration = c->iteration + substep / f->substeps;
+  const uint64_t substep = c->substep + step, iteration = c->iteration + substep / f->substeps;
   const double t = msri_plan_time(f, iteration, substep % f->substeps);
   double share = 0;
-  for (uint64_t j = 0; j < k % drifts; j++) share += msri_splitting_drift(f->integrator, (int)j);
+  for (int before = 0; before < j; before++) share += msri_splitting_drift(f->integrator, before);
   return share == 0 ? t : t + share * f->h;
 }
 
-/* A half flow over `share` of a step, in the air there is at time t. */
-static void damp(const msri_course *c, double t, double share, const msri_swept *state, double *air,
-                 double *keep) {
-  const msr_view s = msri_plan_view(c->plan, t, NULL, NULL);
+/* A half flow over `share` of a step, in the air there is at the time of s. Adding -0 changes
+ * nothing. */
+static void relax_half(const msri_course *c, const msr_view *s, double share, const msri_swept *to,
+                       double *keep, double *push) {
   *keep = 1;
+  push[0] = push[1] = -0.0;
   for (size_t i = 0; i < c->plan->n_terms && share != 0; i++) {
     const msri_term *term = &c->plan->term[i];
     if (!term->force->relax) continue;
-    *keep = term->force->relax(term->self, state->scratch + term->scratch, &s,
-                               share * c->plan->figures.h, air);
-    state->calls[i]++;
+    *keep = term->force->relax(term->self, to->scratch + term->scratch, s,
+                               share * c->plan->figures.h, push);
+    to->calls[i]++;
   }
 }
 
-/* Forces that are the same on each mass, and a call of all that don't depend on velocity. */
-static void weigh(const msri_course *c, const msri_swept *state, double *weight) {
-  const msr_view s = msri_plan_view(c->plan, 0, NULL, NULL);
-  for (size_t i = 0; i < c->plan->n_terms; i++) {
-    const msri_term *term = &c->plan->term[i];
-    if (term->force->relax) continue;
+static void relax(const msri_course *c, double t, const msri_swept *state, msri_motion *m) {
+  const msri_joint *at = &state->still->joint;
+  const double share[2] = {at->damp_back, at->damp_forward};
+  const msr_view s = msri_plan_view(c->plan, t, NULL, NULL);
+  for (int n = 0; n < 2; n++) {
+    relax_half(c, &s, share[n], state, &m->keep[n], m->push[n]);
+    m->relaxes |= share[n] != 0;
+    m->pushes |= m->push[n][0] != 0 || m->push[n][1] != 0;
+  }
+}
+
+/* Forces that are the same on each mass. */
+static void weigh(const msr_plan *plan, double *weight) {
+  const msr_view s = msri_plan_view(plan, 0, NULL, NULL);
+  for (size_t i = 0; i < plan->n_terms; i++) {
+    const msri_term *term = &plan->term[i];
     if (term->force->uniform) term->force->uniform(term->self, &s, weight);
-    state->calls[i]++;
   }
 }
 
-static void set_kicks(const joints *at, bool damped, double h, double *kick) {
-  for (int n = 0; n < at->n && !damped; n++)
-    kick[n] = (at->at[n].kick_before + at->at[n].kick_after) * h;
-  if (!damped) return;
-  kick[0] = at->at[0].kick_before * h;
-  kick[1] = at->at[at->n - 1].kick_after * h;
+/* Two joints in air: of the first what's before the air, of the second what's after. */
+static msri_joint in_air(const joints *at) {
+  if (at->n == 0) return (msri_joint){0};
+  const msri_joint *end = &at->at[0], *begin = &at->at[at->n - 1];
+  return (msri_joint){end->kick_before, end->damp_back, begin->damp_forward, begin->kick_after};
 }
 
-/* Air is between kicks, and debts are paid by accelerations, even if these kick nothing. */
-static bool evaluates(const msr_plan *plan, const double *kick) {
-  return kick[0] != 0 || kick[1] != 0 || msri_plan_damps(plan) || msri_plan_settles(plan);
+static void kick(const msr_plan *plan, const joints *at, const msri_joint *joint, double *kick) {
+  const bool air = msri_plan_damps(plan);
+  for (int n = 0; n < at->n; n++) kick[n] = at->at[n].kick_before + at->at[n].kick_after;
+  if (air) kick[0] = joint->kick_before, kick[1] = joint->kick_after;
+  for (int n = 0; n < 2; n++) kick[n] *= plan->figures.h;
+}
+
+/* Debts are paid by accelerations, even if these kick nothing. */
+static bool evaluates(const msr_plan *plan, const joints *at) {
+  bool kicks = false;
+  for (int n = 0; n < at->n; n++) kicks |= at->at[n].kick_before != 0 || at->at[n].kick_after != 0;
+  return kicks || msri_plan_settles(plan);
 }
 
 int msri_course_evaluations(const msr_plan *plan) {
@@ -89,35 +104,46 @@ int msri_course_evaluations(const msr_plan *plan) {
   const int drifts = drifts_of(&two);
   int n = 0;
   for (int j = 0; j < drifts; j++) {
-    const joints at = joints_of(&two, (uint64_t)(drifts + j));
-    double kick[2] = {0};
-    set_kicks(&at, msri_plan_damps(plan), 1, kick);
-    n += evaluates(plan, kick);
+    const joints at = joints_of(&two, 1, j);
+    n += evaluates(plan, &at);
   }
   return n;
 }
 
-msri_stage msri_course_stage(const msri_course *c, uint64_t k, const msri_swept *state) {
-  const joints at = joints_of(c, k);
-  const bool damped = msri_plan_damps(c->plan);
-  const double h = c->plan->figures.h, t = time_of(c, k);
-  const uint64_t drifts = (uint64_t)drifts_of(c);
-  msri_stage stage = {0};
-  msri_motion *m = &stage.motion;
-  m->k = c->plan->mesh.lattice_k;
-  for (int side = 0; side < 2; side++) m->L[side] = c->plan->mesh.lattice_L[side];
-  m->w = 1 / c->plan->uniform_mass;
-  if (at.n > 0) set_kicks(&at, damped, h, m->kick);
-  stage.forces = evaluates(c->plan, m->kick);
-  if (stage.forces) weigh(c, state, m->weight);
+static void find_still(const msri_course *c, uint64_t step, int j, msri_still *still) {
+  const msr_plan *plan = c->plan;
+  const joints at = joints_of(c, step, j);
+  msri_motion *m = &still->stage.motion;
+  *still = (msri_still){.joint = in_air(&at), .drift = j};
   m->keep[0] = m->keep[1] = 1;
-  if (damped && at.n > 0) {
-    damp(c, t, at.at[0].damp_back, state, m->air[0], &m->keep[0]);
-    damp(c, t, at.at[at.n - 1].damp_forward, state, m->air[1], &m->keep[1]);
-  }
-  if (k < c->steps * drifts)
-    m->drift = msri_splitting_drift(c->plan->figures.integrator, (int)(k % drifts)) * h;
-  const size_t first = c->plan->n_terms;
-  for (size_t e = first; e < first + c->plan->n_contacts && m->drift != 0; e++) state->calls[e]++;
+  still->inside = (step > 0 || j > 0) && step < c->steps;
+  still->damps = msri_plan_damps(plan);
+  still->stage.forces = evaluates(plan, &at);
+  m->k = plan->mesh.lattice_k;
+  for (int side = 0; side < 2; side++) m->L[side] = plan->mesh.lattice_L[side];
+  m->w = 1 / plan->uniform_mass;
+  if (still->stage.forces) weigh(plan, m->weight);
+  kick(plan, &at, &still->joint, m->kick);
+  if (step < c->steps)
+    m->drift = msri_splitting_drift(plan->figures.integrator, j) * plan->figures.h;
+}
+
+/* Calls of forces that don't depend on velocity, and of contacts. */
+static void count(const msr_plan *plan, const msri_stage *stage, uint64_t *calls) {
+  for (size_t i = 0; i < plan->n_terms && stage->forces; i++)
+    calls[i] += !plan->term[i].force->relax;
+  const size_t first = plan->n_terms;
+  for (size_t e = first; e < first + plan->n_contacts && stage->motion.drift != 0; e++) calls[e]++;
+}
+
+msri_stage msri_course_stage(const msri_course *c, uint64_t k, const msri_swept *state) {
+  const uint64_t drifts = (uint64_t)drifts_of(c), step = k / drifts;
+  const int j = (int)(k - step * drifts);
+  msri_still *still = state->still;
+  const bool inside = k > 0 && step < c->steps;
+  if (!(inside && still->inside && still->drift == j)) find_still(c, step, j, still);
+  msri_stage stage = still->stage;
+  count(c->plan, &stage, state->calls);
+  if (still->damps) relax(c, time_of(c, step, j), state, &stage.motion);
   return stage;
 }

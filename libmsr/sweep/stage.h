@@ -4,7 +4,23 @@
 
 #include "contacts/armed.h"
 #include "forces/lattice.h"
+#include "integrators/splitting.h"
 #include "plan/plan.h"
+
+typedef struct msri_stage {
+  bool forces; /* else it only relaxes, if it does, and drifts */
+  bool tells;  /* how fast masses are */
+  msri_motion motion;
+} msri_stage;
+
+/* Of the stage that was asked for last what doesn't depend on time; all 0: of none. */
+typedef struct msri_still {
+  bool inside; /* a step of others before and after it: those at the same drift are alike */
+  int drift;
+  bool damps;
+  msri_joint joint;
+  msri_stage stage;
+} msri_still;
 
 /* What is stepped: the arrays of a state. */
 typedef struct msri_swept {
@@ -12,13 +28,8 @@ typedef struct msri_swept {
   char *scratch;           /* of the terms */
   uint64_t *calls;         /* of the effects, counted up */
   msri_armed *armed;       /* of the objects' blocks, if anything can be met */
+  msri_still *still;       /* kept from stage to stage */
 } msri_swept;
-
-typedef struct msri_stage {
-  bool forces; /* else it only drifts */
-  bool tells;  /* how fast masses are */
-  msri_motion motion;
-} msri_stage;
 
 /* A course of steps: from substep `substep` of an iteration on, so many. */
 typedef struct msri_course {

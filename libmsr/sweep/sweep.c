@@ -271,8 +271,7 @@ static double run_part(msri_sweep *s, const msri_object *object, const msri_part
 /* The first part works on half a wedge more than its rows, the last one on less. */
 static void share_out(const msri_sweep *s, size_t rows, size_t parts, size_t *begin) {
   const size_t more = ((size_t)s->pass.stages - 1) / 2;
-  for (size_t p = 0; p <= parts; p++)
-    begin[p] = rows * p / parts - (p > 0 && p < parts ? more : 0);
+  for (size_t p = 0; p <= parts; p++) begin[p] = rows * p / parts - (p > 0 && p < parts ? more : 0);
 }
 
 static double run_large(msri_sweep *s, const msri_object *object, unsigned thread, unsigned owner,
