@@ -97,6 +97,33 @@ static inline void add_force(msr_scene *scene, const msr_force *force, const voi
   must(msr_scene_add_force(scene, force, params, &why));
 }
 
+/* ---- A force that does nothing: beside it steps are taken by whole vectors, not row by row */
+
+static inline msr_status add_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
+                                     double *fy) {
+  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
+  return MSR_OK;
+}
+
+static inline double no_energy(const void *self, const msr_view *s) {
+  (void)self, (void)s;
+  return 0;
+}
+
+static inline msr_status add_nothing_between(const void *self, void *scratch, const msr_view *s,
+                                             const msr_view *to, double *fx, double *fy) {
+  (void)to;
+  return add_nothing(self, scratch, s, fx, fy);
+}
+
+static const msr_force nothing = {.name = "nothing",
+                                  .summary = "F = 0",
+                                  .conservative = true,
+                                  .ignores_start = true,
+                                  .add = add_nothing,
+                                  .energy = no_energy,
+                                  .between = add_nothing_between};
+
 /* ---- Worlds */
 
 typedef struct world {

@@ -79,17 +79,6 @@ static const net nets[] = {
 
 /* ---- Runs */
 
-static msr_status do_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
-                             double *fy) {
-  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
-  return MSR_OK;
-}
-
-static const msr_force nothing = {.name = "nothing",
-                                  .summary = "makes a plan take steps one by one",
-                                  .dissipative = true,
-                                  .add = do_nothing};
-
 typedef struct course {
   const msr_integrator *integrator;
   uint64_t substeps, iterations[4]; /* cut in pieces; ended by 0 */

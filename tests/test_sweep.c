@@ -13,28 +13,6 @@
 
 /* ---- The same scene by both ways */
 
-static msr_status add_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
-                              double *fy) {
-  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
-  return MSR_OK;
-}
-static msr_status add_nothing_between(const void *self, void *scratch, const msr_view *s,
-                                      const msr_view *to, double *fx, double *fy) {
-  (void)to;
-  return add_nothing(self, scratch, s, fx, fy);
-}
-static double no_energy(const void *self, const msr_view *s) {
-  (void)self, (void)s;
-  return 0;
-}
-static const msr_force nothing = {.name = "nothing",
-                                  .summary = "0",
-                                  .conservative = true,
-                                  .ignores_start = true,
-                                  .add = add_nothing,
-                                  .energy = no_energy,
-                                  .between = add_nothing_between};
-
 enum { STILL, DRAG, WIND, AIRS };
 
 typedef struct trial {
