@@ -578,9 +578,9 @@ typedef struct msr_plan_options {
                       * error of v shakes a stiff spring little and often, so that a second of any
                       * scene ends within some atol [px]; both 0: atol 1e-6 */
   msr_impacts impacts;
-  unsigned threads; /* that a state steps with, up to 256; 0: 1. Each state starts its own, which
-                     * end with it. Bits don't depend on them. They serve methods that split, on a
-                     * picture's springs with gravity and air; else they have nothing to do */
+  unsigned threads; /* that a state may step with, up to 256; 0: 1. Each state starts its own, which
+                     * end with it, as many of them as figures.threads tells. Bits don't depend on
+                     * them */
   bool
       timed; /* states measure the time of each effect (msr_state_seconds); else no clock is read */
 } msr_plan_options;
@@ -639,6 +639,13 @@ typedef struct msr_plan_figures {
   const msr_integrator *care;  /* takes over, from where the energy was sound, once 2 % of what the
                                 * scene had to give came from nowhere; NULL: none */
   msr_impacts impacts;
+  unsigned threads; /* that a state steps with: of those asked for no more than there are processors
+                     * for the process, nor than have an object of their own to step or a part of a
+                     * large one */
+  const char *by_vectors; /* why states step vectors of all masses, one effect after the other, by
+                           * one thread; NULL: they step row by row, several steps at a time, as
+                           * methods that split do past a picture's objects or a program's equal
+                           * masses, with springs, gravity and air. Owned by the plan */
   uint64_t iterations, images, substeps;
   double atol, rtol;  /* of adaptive methods */
   double dt;          /* of an iteration [s] */
@@ -740,7 +747,7 @@ MSR_API msr_arrays msr_state_edit(msr_state *state);
 MSR_API uint64_t msr_state_iteration(const msr_state *state);
 
 /* Advances to `iterations` of DT from here. Methods that split take an evaluation of the forces
- * more in each call where they step row by row (see msr_plan_options.threads), unless a step ends
+ * more in each call where they step row by row (see figures.by_vectors), unless a step ends
  * in a drift: a call is better of many iterations than of one. So they do after each look at all
  * energies, and past supports after 31 steps, or fewer of wide objects. The guard looks at speeds
  * every 16 steps, row by row every 64 of their stages, and at all energies every 256: MSR_EUNSTABLE

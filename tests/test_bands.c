@@ -1,10 +1,12 @@
 /* test_bands.c - meshes that a program built go through several steps band by band, by several
  * threads: the bits are those of one step after the other on whole vectors, which a force of one's
- * own that does nothing makes the library take. */
+ * own that does nothing makes the library take.
+ * link: --wrap=msri_processors */
 #include "integrators/splitting.h"
 #include "plan/state.h"
 #include "sweep/sweep.h"
 
+#include "processors.h"
 #include "scenes.h"
 
 /* ---- Meshes */

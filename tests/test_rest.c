@@ -1,7 +1,9 @@
 /* test_rest.c - objects at rest are left out of steps, and nothing tells: places, velocities,
  * collisions and energies are, bit by bit, those of plans that leave nothing out, a force that does
- * nothing having them step all masses; whatever else changes a state wakes them. */
+ * nothing having them step all masses; whatever else changes a state wakes them.
+ * link: --wrap=msri_processors */
 #include "files.h"
+#include "processors.h"
 #include "scenes.h"
 
 #include "plan/state.h"

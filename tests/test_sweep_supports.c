@@ -1,7 +1,9 @@
 /* test_sweep_supports.c - steps row by row past supports: the same bits and collisions as by whole
- * vectors, for any shape, rule of impact, threads and cuts. */
+ * vectors, for any shape, rule of impact, threads and cuts.
+ * link: --wrap=msri_processors */
 #include "sweep/sweep.h"
 
+#include "processors.h"
 #include "scenes.h"
 
 typedef struct trial {
