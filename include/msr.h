@@ -710,7 +710,9 @@ MSR_API bool msr_plan_pixel(const msr_plan *plan, size_t mass, size_t *column, s
 
 typedef struct msr_state msr_state;
 
-/* The state at t = 0; the plan must outlive it. MSR_ENOMEM, what the integrator's open returns. */
+/* The state at t = 0; the plan must outlive it. MSR_ENOMEM if there is no memory, or if the system
+ * gives fewer threads than figures.threads: the message says how many it did; what the integrator's
+ * open returns. */
 MSR_API msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *err);
 
 MSR_API void msr_state_free(msr_state *state);
@@ -867,7 +869,9 @@ typedef struct msr_sink {
 MSR_API msr_status msr_frames_open(const msr_plan *plan, const char *dir, const msr_style *style,
                                    bool overwrite, msr_sink *sink, msr_error *err);
 
-/* Wall time that a sink of msr_frames_open has spent on drawing, not writing, so far [s]. */
+/* Wall time that drawing, not writing, has taken so far [s]. Only for a sink that msr_frames_open
+ * has made and that isn't closed; while msr_run completes frames in a thread, only from within what
+ * that calls of the sink: write or complete. */
 MSR_API double msr_frames_drawing(const msr_sink *sink);
 
 /* CSV with the header frame,time,kinetic,spring,gravity,total,px,py,contacts,longest: energies,
