@@ -26,6 +26,18 @@ static inline void must(msr_status status) {
   if (status != MSR_OK) fail_msg("%s: %s", msr_status_text(status), why.message);
 }
 
+/* ---- Messages: what follows a word, and the number there */
+
+static inline const char *text_after(const char *message, const char *word) {
+  const char *at = strstr(message, word);
+  if (!at) fail_msg("no '%s' in '%s'", word, message);
+  return at + strlen(word);
+}
+
+static inline double number_after(const char *message, const char *word) {
+  return strtod(text_after(message, word), NULL);
+}
+
 /* ---- Pictures in letters: each row ends in a line feed */
 
 static const struct colour {
