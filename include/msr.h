@@ -43,7 +43,7 @@ extern "C" {
 #define MSR_API
 #endif
 
-#define MSR_VERSION "0.1.0"
+#define MSR_VERSION "0.2.0"
 
 /* Version of the library that the program runs with, as MSR_VERSION. */
 MSR_API const char *msr_version(void);
