@@ -312,15 +312,10 @@ static void work(void *self, unsigned thread) {
   me->turn = turn;
 }
 
-/* Is there nothing but one small object? Then the others wouldn't have anything to do. */
-static bool is_lone(const msr_plan *plan) {
-  return plan->objects.n == 1 && is_small(plan, plan->objects.object);
-}
-
 /* Takes the stages that are set. Returns the largest speed along an axis. */
 static double run_pass(msri_sweep *s, uint64_t *met) {
   double fastest = 0;
-  if (s->team && !is_lone(s->pass.plan))
+  if (s->team)
     msri_team_run(s->team, work, s);
   else
     work(s, 0);
