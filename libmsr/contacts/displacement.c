@@ -45,7 +45,7 @@ static void take(size_t n, const double *x0, const double *x, lanes *l) {
 MSRI_AVX2 static void take_avx2(size_t n, const double *x0, const double *x, lanes *l) {
   __m256d low[2], high[2];
   const size_t whole = n / LANES * LANES;
-  for (int k = 0; k < 2; k++)
+  for (size_t k = 0; k < 2; k++)
     low[k] = _mm256_loadu_pd(l->low + 4 * k), high[k] = _mm256_loadu_pd(l->high + 4 * k);
   for (size_t i = 0; i < whole; i += LANES)
     for (size_t k = 0; k < 2; k++) {
@@ -53,7 +53,7 @@ MSRI_AVX2 static void take_avx2(size_t n, const double *x0, const double *x, lan
       const __m256d d = _mm256_sub_pd(to, from);
       low[k] = _mm256_min_pd(d, low[k]), high[k] = _mm256_max_pd(d, high[k]);
     }
-  for (int k = 0; k < 2; k++)
+  for (size_t k = 0; k < 2; k++)
     _mm256_storeu_pd(l->low + 4 * k, low[k]), _mm256_storeu_pd(l->high + 4 * k, high[k]);
   take(n - whole, x0 + whole, x + whole, l);
 }

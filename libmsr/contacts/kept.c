@@ -121,7 +121,7 @@ static void owe(msri_debts *debts, size_t mass, const msri_leg *leg) {
 static unsigned walk(const msri_supports *s, double h, const msri_flock *f, size_t k,
                      const double *to, msri_debts *debts) {
   msri_leg leg = {.h = h,
-                  .a = {f->ax ? f->ax[k] : 0, f->ax ? f->ay[k] : 0},
+                  .a = {f->ax ? f->ax[k] : 0, f->ay ? f->ay[k] : 0},
                   .x = {f->x[k], f->y[k]},
                   .v = {f->vx[k], f->vy[k]},
                   .follows = debts != NULL};

@@ -105,28 +105,28 @@ static void forget(msri_lists *w) {
 
 /* ---- A drift */
 
-void msri_lists_set_paths(msri_lists *w) {
-  const size_t n = w->bodies->n;
+void msri_lists_set_paths(msri_lists *lists) {
+  const size_t n = lists->bodies->n;
   double mean[2] = {0, 0}, sound = 0;
   for (size_t b = 0; b < n; b++) {
-    const msri_displacement m = w->body[b].displacement = msri_displacement_of(&w->box[b]);
+    const msri_displacement m = lists->body[b].displacement = msri_displacement_of(&lists->box[b]);
     if (m.spread < (double)INFINITY) mean[0] += m.path[0], mean[1] += m.path[1], sound++;
   }
   for (size_t b = 0; b < n; b++) {
-    const msri_displacement m = w->body[b].displacement;
+    const msri_displacement m = lists->body[b].displacement;
     const double x = m.path[0] - mean[0] / sound, y = m.path[1] - mean[1] / sound;
-    w->body[b].away = n > 1 ? sqrt(x * x + y * y) * msri_more + m.spread : 0;
+    lists->body[b].away = n > 1 ? sqrt(x * x + y * y) * msri_more + m.spread : 0;
   }
 }
 
-void msri_lists_begin(msri_lists *w, const double *q0, const double *q) {
-  const bool moved = !q || w->kept->q != q;
-  msri_lists_set_paths(w);
-  for (size_t b = 0; b < w->bodies->n; b++) {
-    w->body[b].hot = false;
+void msri_lists_begin(msri_lists *lists, const double *q0, const double *q) {
+  const bool moved = !q || lists->kept->q != q;
+  msri_lists_set_paths(lists);
+  for (size_t b = 0; b < lists->bodies->n; b++) {
+    lists->body[b].hot = false;
     if (!moved) continue;
-    w->body[b].outer.known = false;
-    look_again(w, b, q0);
+    lists->body[b].outer.known = false;
+    look_again(lists, b, q0);
   }
 }
 
@@ -141,10 +141,10 @@ static bool cover_paths(msri_lists *w, const double *q0) {
   return msri_lists_cover_outer(w, q0, 0) && room;
 }
 
-void msri_lists_cover_paths(msri_lists *w, const double *q0) {
-  if (cover_paths(w, q0)) return;
-  forget(w);
-  cover_paths(w, q0);
+void msri_lists_cover_paths(msri_lists *lists, const double *q0) {
+  if (cover_paths(lists, q0)) return;
+  forget(lists);
+  cover_paths(lists, q0);
 }
 
 /* So are swift ones: for all that is known. */
@@ -203,13 +203,14 @@ bool msri_lists_foresees(msri_lists *w, double h) {
   return good;
 }
 
-void msri_lists_end(msri_lists *w, const double *q) {
-  for (size_t b = 0; b < w->bodies->n; b++) {
-    w->body[b].inner.used += w->body[b].displacement.spread;
-    w->body[b].outer.used += w->body[b].away;
-    w->body[b].far += fabs(w->body[b].displacement.path[0]) +
-                      fabs(w->body[b].displacement.path[1]) + w->body[b].displacement.spread;
+void msri_lists_end(msri_lists *lists, const double *q) {
+  for (size_t b = 0; b < lists->bodies->n; b++) {
+    lists->body[b].inner.used += lists->body[b].displacement.spread;
+    lists->body[b].outer.used += lists->body[b].away;
+    lists->body[b].far += fabs(lists->body[b].displacement.path[0]) +
+                          fabs(lists->body[b].displacement.path[1]) +
+                          lists->body[b].displacement.spread;
   }
-  w->kept->drifts++;
-  w->kept->q = q;
+  lists->kept->drifts++;
+  lists->kept->q = q;
 }
