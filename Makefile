@@ -271,7 +271,7 @@ bench-effects: $(BUILD)/msr
 
 BESIDE = $(BUILD)/bench/stability
 
-$(BESIDE): $(call object,$(BESIDE_SRC) tests/bench/fail.c) $(BUILD)/libmsr.a
+$(BESIDE): $(call object,$(BESIDE_SRC) tests/bench/fail.c tests/bench/machine.c) $(BUILD)/libmsr.a
 	@mkdir -p $(@D)
 	$(call show,LINK)$(CXX) $(CFLAGS) $(LDFLAGS) -o $@ $^ -lchipmunk -lbox2d $(GSL_LIBS)
 
@@ -286,7 +286,7 @@ SPEED = $(BUILD)/bench/speed
 $(BUILD)/obj/tests/bench/speed/assignment.o: OWN = -O2 -fmath-errno
 $(BUILD)/obj/tests/bench/speed/limit_kernel.o: OWN = -Wno-psabi
 
-$(SPEED): $(call object,$(SPEED_SRC) tests/bench/fail.c) $(BUILD)/libmsr.a
+$(SPEED): $(call object,$(SPEED_SRC) tests/bench/fail.c tests/bench/machine.c) $(BUILD)/libmsr.a
 	@mkdir -p $(@D)
 	$(call show,LINK)$(LINK) -pthread -o $@ $^ $(GSL_LIBS)
 

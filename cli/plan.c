@@ -6,6 +6,7 @@
 #include "report.h"
 #include "signals.h"
 #include "simulation.h"
+#include "steps.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -55,10 +56,11 @@ static void print_integrator(const settings *s, const msr_plan_figures *f) {
   }
 }
 
-static void print_step(const msr_plan_figures *f) {
+static void print_step(const settings *s, const msr_plan *plan, const msr_plan_figures *f) {
   label("step");
   printf("%.6g s: %" PRIu64 " substep%s per DT", f->h, f->substeps, f->substeps > 1 ? "s" : "");
   puts(f->integrator->adaptive ? ", divided as errors ask for" : "");
+  steps_print(stdout, s, plan);
   if (f->leaps) {
     label("long steps");
     printf("%s, implicit, wherever cheaper than the substeps that they span\n", f->leaps->name);
@@ -167,7 +169,7 @@ static void print_text(const plan_data *d) {
   print_scene(&d->f);
   print_time(&d->f);
   print_integrator(d->s, &d->f);
-  print_step(&d->f);
+  print_step(d->s, d->plan, &d->f);
   print_limits(d);
   if (d->contacts) print_impacts(&d->f);
   print_memory(d->s, &d->f);

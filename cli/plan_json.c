@@ -52,6 +52,10 @@ static void print_step(json *j, const plan_data *d) {
   json_count(j, "substeps", d->f.substeps);
   json_bool(j, "adaptive", d->f.integrator->adaptive);
   json_number(j, "safe", d->f.safe_step);
+  json_bool(j, "row_by_row", !d->f.by_vectors);
+  json_text(j, "by_vectors", d->f.by_vectors);
+  json_count(j, "threads", d->f.threads);
+  json_count(j, "threads_asked", d->s->threads > 0 ? d->s->threads : 1);
   json_close(j, '}');
 }
 

@@ -3,6 +3,7 @@
 #include "report.h"
 #include "signals.h"
 #include "simulation.h"
+#include "steps.h"
 #include "watch.h"
 
 #include <inttypes.h>
@@ -70,6 +71,7 @@ msr_status run_command(const settings *s, msr_error *err) {
   if (status != MSR_OK) return status;
   effect_list *const list = s->verbose ? effects_create(s, plan) : NULL;
   if (s->verbose && !list) status = fail(err, MSR_ENOMEM, "out of memory for the effects");
+  if (list) steps_print(stderr, s, plan);
   if (list) effects_print(stderr, list);
   if (status == MSR_OK) status = simulate(s, plan, list, err);
   free(list);

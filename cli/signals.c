@@ -1,15 +1,34 @@
-/* signals.c - handlers that only set a flag: the work looks at it between two steps. */
+/* signals.c - handlers that only take a note: the work looks at it between two steps. SIGPIPE comes
+ * to the thread that writes, the others to any: what they share is atomic. */
 #include "signals.h"
 
 #include <signal.h>
+#include <stdatomic.h>
 #include <stddef.h>
+#include <time.h>
 
-static volatile sig_atomic_t caught, times; /* the last signal, or 0; how many */
+_Static_assert(ATOMIC_INT_LOCK_FREE == 2, "handlers may use no locks (C11 7.14.1.1)");
 
-/* Where a signal goes to a process and to its group it comes twice: the third is impatience. */
+enum { ONE_PRESS = 200 }; /* [ms] */
+
+static _Atomic int caught;     /* the last signal, or 0 */
+static _Atomic unsigned since; /* when the first came that asks msr to end [ms]; 0: none did */
+
+/* Any clock that goes on; not 0. */
+static unsigned milliseconds(void) {
+  struct timespec t = {0};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return ((unsigned)t.tv_sec * 1000 + (unsigned)(t.tv_nsec / 1000000)) | 1;
+}
+
+/* Where a signal goes to a process and to its group it comes twice; after a while, a second one is
+ * impatience: a write to a pipe that nobody reads never ends. */
 static void on_signal(int number) {
-  caught = number;
-  if (++times < 3 || number == SIGPIPE) return;
+  unsigned first = 0;
+  const unsigned now = milliseconds();
+  atomic_store(&caught, number);
+  if (number == SIGPIPE || atomic_compare_exchange_strong(&since, &first, now)) return;
+  if (now - first < ONE_PRESS) return;
   signal(number, SIG_DFL);
   raise(number);
 }
@@ -34,10 +53,10 @@ void signals_catch(void) {
   }
 }
 
-int signals_caught(void) { return caught; }
+int signals_caught(void) { return atomic_load(&caught); }
 
 void signals_end_by_pipe(void) {
-  if (caught != SIGPIPE) return;
+  if (signals_caught() != SIGPIPE) return;
   signal(SIGPIPE, SIG_DFL);
   raise(SIGPIPE);
 }

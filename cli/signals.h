@@ -2,8 +2,8 @@
 #ifndef CLI_SIGNALS_H
 #define CLI_SIGNALS_H
 
-/* From here on Ctrl-C, SIGTERM, SIGHUP, of which the third ends msr at once, and SIGPIPE are only
- * noted. */
+/* From here on Ctrl-C, SIGTERM, SIGHUP and SIGPIPE are only noted; another of the first three, 0.2
+ * s later or more, ends msr at once. */
 void signals_catch(void);
 
 /* The last that came, or 0. */

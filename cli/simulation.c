@@ -3,6 +3,7 @@
 
 #include "inputs.h"
 #include "report.h"
+#include "steps.h"
 #include "study.h"
 
 #include <string.h>
@@ -80,6 +81,7 @@ static void tell_notes(const settings *s, const msr_plan *plan) {
   if (s->impacts == MSR_IMPACTS_LOCATED && !simulation_contacts(plan)) {
     tell(s, "note", "--impacts has no effect: there is no support, and the border is open");
   }
+  steps_note(s, plan);
 }
 
 /* Was the very run that is to come tried, from its beginning to its end? */

@@ -43,7 +43,7 @@ extern "C" {
 #define MSR_API
 #endif
 
-#define MSR_VERSION "0.1.0"
+#define MSR_VERSION "0.2.0"
 
 /* Version of the library that the program runs with, as MSR_VERSION. */
 MSR_API const char *msr_version(void);
@@ -578,9 +578,9 @@ typedef struct msr_plan_options {
                       * error of v shakes a stiff spring little and often, so that a second of any
                       * scene ends within some atol [px]; both 0: atol 1e-6 */
   msr_impacts impacts;
-  unsigned threads; /* that a state steps with, up to 256; 0: 1. Each state starts its own, which
-                     * end with it. Bits don't depend on them. They serve methods that split, on a
-                     * picture's springs with gravity and air; else they have nothing to do */
+  unsigned threads; /* that a state may step with, up to 256; 0: 1. Each state starts its own, which
+                     * end with it, as many of them as figures.threads tells. Bits don't depend on
+                     * them */
   bool
       timed; /* states measure the time of each effect (msr_state_seconds); else no clock is read */
 } msr_plan_options;
@@ -639,6 +639,13 @@ typedef struct msr_plan_figures {
   const msr_integrator *care;  /* takes over, from where the energy was sound, once 2 % of what the
                                 * scene had to give came from nowhere; NULL: none */
   msr_impacts impacts;
+  unsigned threads; /* that a state steps with: of those asked for no more than there are processors
+                     * for the process, nor than have an object of their own to step or a part of a
+                     * large one */
+  const char *by_vectors; /* why states step vectors of all masses, one effect after the other, by
+                           * one thread; NULL: they step row by row, several steps at a time, as
+                           * methods that split do past a picture's objects or a program's equal
+                           * masses, with springs, gravity and air. Owned by the plan */
   uint64_t iterations, images, substeps;
   double atol, rtol;  /* of adaptive methods */
   double dt;          /* of an iteration [s] */
@@ -703,7 +710,9 @@ MSR_API bool msr_plan_pixel(const msr_plan *plan, size_t mass, size_t *column, s
 
 typedef struct msr_state msr_state;
 
-/* The state at t = 0; the plan must outlive it. MSR_ENOMEM, what the integrator's open returns. */
+/* The state at t = 0; the plan must outlive it. MSR_ENOMEM if there is no memory, or if the system
+ * gives fewer threads than figures.threads: the message says how many it did; what the integrator's
+ * open returns. */
 MSR_API msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *err);
 
 MSR_API void msr_state_free(msr_state *state);
@@ -740,7 +749,7 @@ MSR_API msr_arrays msr_state_edit(msr_state *state);
 MSR_API uint64_t msr_state_iteration(const msr_state *state);
 
 /* Advances to `iterations` of DT from here. Methods that split take an evaluation of the forces
- * more in each call where they step row by row (see msr_plan_options.threads), unless a step ends
+ * more in each call where they step row by row (see figures.by_vectors), unless a step ends
  * in a drift: a call is better of many iterations than of one. So they do after each look at all
  * energies, and past supports after 31 steps, or fewer of wide objects. The guard looks at speeds
  * every 16 steps, row by row every 64 of their stages, and at all energies every 256: MSR_EUNSTABLE
@@ -860,7 +869,9 @@ typedef struct msr_sink {
 MSR_API msr_status msr_frames_open(const msr_plan *plan, const char *dir, const msr_style *style,
                                    bool overwrite, msr_sink *sink, msr_error *err);
 
-/* Wall time that a sink of msr_frames_open has spent on drawing, not writing, so far [s]. */
+/* Wall time that drawing, not writing, has taken so far [s]. Only for a sink that msr_frames_open
+ * has made and that isn't closed; while msr_run completes frames in a thread, only from within what
+ * that calls of the sink: write or complete. */
 MSR_API double msr_frames_drawing(const msr_sink *sink);
 
 /* CSV with the header frame,time,kinetic,spring,gravity,total,px,py,contacts,longest: energies,

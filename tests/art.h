@@ -26,6 +26,18 @@ static inline void must(msr_status status) {
   if (status != MSR_OK) fail_msg("%s: %s", msr_status_text(status), why.message);
 }
 
+/* ---- Messages: what follows a word, and the number there */
+
+static inline const char *text_after(const char *message, const char *word) {
+  const char *at = strstr(message, word);
+  if (!at) fail_msg("no '%s' in '%s'", word, message);
+  return at + strlen(word);
+}
+
+static inline double number_after(const char *message, const char *word) {
+  return strtod(text_after(message, word), NULL);
+}
+
 /* ---- Pictures in letters: each row ends in a line feed */
 
 static const struct colour {
@@ -96,6 +108,33 @@ static inline void add_mass(msr_scene *scene, double x, double y, double vx, dou
 static inline void add_force(msr_scene *scene, const msr_force *force, const void *params) {
   must(msr_scene_add_force(scene, force, params, &why));
 }
+
+/* ---- A force that does nothing: beside it steps are taken by whole vectors, not row by row */
+
+static inline msr_status add_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
+                                     double *fy) {
+  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
+  return MSR_OK;
+}
+
+static inline double no_energy(const void *self, const msr_view *s) {
+  (void)self, (void)s;
+  return 0;
+}
+
+static inline msr_status add_nothing_between(const void *self, void *scratch, const msr_view *s,
+                                             const msr_view *to, double *fx, double *fy) {
+  (void)to;
+  return add_nothing(self, scratch, s, fx, fy);
+}
+
+static const msr_force nothing = {.name = "nothing",
+                                  .summary = "F = 0",
+                                  .conservative = true,
+                                  .ignores_start = true,
+                                  .add = add_nothing,
+                                  .energy = no_energy,
+                                  .between = add_nothing_between};
 
 /* ---- Worlds */
 

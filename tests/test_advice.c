@@ -2,17 +2,6 @@
  * that works; and that numbers at the ends of their range are told for what they are. */
 #include "art.h"
 
-/* What follows a word of the message, and the number there. */
-static const char *from(const char *message, const char *word) {
-  const char *at = strstr(message, word);
-  if (!at) fail_msg("no '%s' in '%s'", word, message);
-  return at + strlen(word);
-}
-
-static double number_after(const char *message, const char *word) {
-  return strtod(from(message, word), NULL);
-}
-
 /* ---- Many explosions, and what each is told to do */
 
 static const char flag[] = "....................\n"

@@ -1,10 +1,12 @@
 /* test_bands.c - meshes that a program built go through several steps band by band, by several
  * threads: the bits are those of one step after the other on whole vectors, which a force of one's
- * own that does nothing makes the library take. */
+ * own that does nothing makes the library take.
+ * link: --wrap=msri_processors */
 #include "integrators/splitting.h"
 #include "plan/state.h"
 #include "sweep/sweep.h"
 
+#include "processors.h"
 #include "scenes.h"
 
 /* ---- Meshes */
@@ -78,17 +80,6 @@ static const net nets[] = {
 };
 
 /* ---- Runs */
-
-static msr_status do_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
-                             double *fy) {
-  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
-  return MSR_OK;
-}
-
-static const msr_force nothing = {.name = "nothing",
-                                  .summary = "makes a plan take steps one by one",
-                                  .dissipative = true,
-                                  .add = do_nothing};
 
 typedef struct course {
   const msr_integrator *integrator;

@@ -729,7 +729,7 @@ static double distance_of(const double *q, size_t n, size_t i, size_t j) {
   return hypot(q[j] - q[i], q[n + j] - q[n + i]);
 }
 
-static bool ways_meet(const void *self, const msri_ways *w, size_t i, size_t j) {
+static bool ways_meet(const void *self, const msri_paths *w, size_t i, size_t j) {
   const size_t n = *(const size_t *)self;
   const double rx = w->q0[j] - w->q0[i], ry = w->q0[n + j] - w->q0[n + i];
   const double dx = w->q[j] - w->q[i] - rx, dy = w->q[n + j] - w->q[n + i] - ry;
@@ -745,7 +745,7 @@ static uint32_t *all_of(finder *f) {
 
 static void list_ways(finder *f) {
   const msri_meets meets = {ways_meet, &f->n};
-  msri_near_list_ways(&f->near, &(msri_ways){f->q0, f->q}, 0.3, &meets, all_of(f), f->n);
+  msri_near_list_paths(&f->near, &(msri_paths){f->q0, f->q}, 0.3, &meets, all_of(f), f->n);
   msri_pair *room = zeroed(f->near.found, sizeof *room);
   msri_near_order(f->near.pair, f->near.found, room);
   free(room);
@@ -753,7 +753,7 @@ static void list_ways(finder *f) {
 
 /* The list is that of all pairs, in order. */
 static void expect_all(const finder *f, bool ways, double reach) {
-  const msri_ways w = {f->q0, f->q};
+  const msri_paths w = {f->q0, f->q};
   size_t k = 0;
   for (size_t i = 0; i < f->n; i++)
     for (size_t j = i + 1; j < f->n; j++) {

@@ -4,6 +4,7 @@
 #include "formats/conf.h"
 
 #include "alloc.h"
+#include "files.h"
 
 #include <float.h>
 #include <locale.h>
@@ -245,15 +246,6 @@ static void no_length_is_too_much(void **state) {
   free(text);
 }
 
-/* The name of a file of this test. */
-static const char *scratch(const char *name) {
-  static char path[512];
-  const char *directory = getenv("TMPDIR");
-  snprintf(path, sizeof path, "%s/msr-conf-%ld-%s", directory ? directory : "/tmp", (long)getpid(),
-           name);
-  return path;
-}
-
 static void write_example(const char *path) {
   FILE *stream = fopen(path, "w");
   assert_non_null(stream);
@@ -263,7 +255,7 @@ static void write_example(const char *path) {
 
 static void files_are_read(void **state) {
   (void)state;
-  const char *path = scratch("read.conf");
+  const char *path = path_of("read.conf");
   msr_conf conf;
   msr_error err;
   write_example(path);
@@ -278,14 +270,14 @@ static void files_are_read(void **state) {
 
 static bool attempt_read(void) {
   msr_conf conf;
-  return msr_conf_read(scratch("alloc.conf"), &conf, NULL) == MSR_OK;
+  return msr_conf_read(path_of("alloc.conf"), &conf, NULL) == MSR_OK;
 }
 
 static void running_out_of_memory_is_an_error(void **state) {
   (void)state;
-  write_example(scratch("alloc.conf"));
+  write_example(path_of("alloc.conf"));
   assert_int_equal(alloc_fail_each(attempt_read), 1);
-  unlink(scratch("alloc.conf"));
+  unlink(path_of("alloc.conf"));
 }
 
 static const struct range {
@@ -346,5 +338,5 @@ int main(void) {
       cmocka_unit_test(programs_are_checked_too),
       cmocka_unit_test(a_french_locale_changes_nothing),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, make_directory, remove_directory);
 }

@@ -24,17 +24,6 @@ static world explosive(const explosion *e) {
   return open_world(scene_of(pegs, &conf, NULL), e->integrator, e->substeps);
 }
 
-/* What follows a word of the message, and the number there. */
-static const char *from(const char *message, const char *word) {
-  const char *at = strstr(message, word);
-  if (!at) fail_msg("no '%s' in '%s'", word, message);
-  return at + strlen(word);
-}
-
-static double number_after(const char *message, const char *word) {
-  return strtod(from(message, word), NULL);
-}
-
 /* Runs as the message says is stable: with the DT it names, and with the substeps. */
 static void assert_advice_works(const explosion *e, const char *message) {
   const double dt = number_after(message, "; stable: DT "),
@@ -64,8 +53,8 @@ static bool place_of(const world *w, long column, long row, double *x, double *y
 
 /* The spring that the message names is the longest of the mass's, and as long as it says. */
 static void assert_longest_spring(const world *w, const char *message) {
-  const char *mass = from(message, "the mass of pixel ("),
-             *spring = from(message, "spring to pixel (");
+  const char *mass = text_after(message, "the mass of pixel ("),
+             *spring = text_after(message, "spring to pixel (");
   const long c = strtol(mass, NULL, 10), r = strtol(strchr(mass, ',') + 1, NULL, 10);
   const long to_c = strtol(spring, NULL, 10), to_r = strtol(strchr(spring, ',') + 1, NULL, 10);
   const double said = number_after(spring, " is ");

@@ -209,17 +209,6 @@ static void a_free_fall_is_one_leap(void **state) {
 }
 
 /* A force that has no mean between two places: no leap succeeds. */
-static msr_status add_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
-                              double *fy) {
-  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
-  return MSR_OK;
-}
-
-static double no_energy(const void *self, const msr_view *s) {
-  (void)self, (void)s;
-  return 0;
-}
-
 static msr_status no_mean(const void *self, void *scratch, const msr_view *s, const msr_view *to,
                           double *fx, double *fy) {
   (void)self, (void)scratch, (void)s, (void)to, (void)fy;

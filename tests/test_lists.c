@@ -155,7 +155,7 @@ static bool meet(const game *g, size_t i, size_t j, bool overlaps_too) {
   const msri_vec from = {g->q0[j] - g->q0[i], g->q0[n + j] - g->q0[n + i]};
   const msri_vec way = {(g->q[j] - g->q0[j]) - (g->q[i] - g->q0[i]),
                         (g->q[n + j] - g->q0[n + j]) - (g->q[n + i] - g->q0[n + i])};
-  const msri_disc_pair p = {.from = from, .way = way, .diameter = diameter};
+  const msri_disc_pair p = {.from = from, .path = way, .diameter = diameter};
   return msri_disc_pair_meets(&p) || (overlaps_too && hypot(from.x, from.y) < diameter + 1e-9);
 }
 
@@ -267,9 +267,9 @@ static void free_place(place *p) {
 }
 
 static void drift_to(place *p, const double *q) {
-  msri_motion_measure(&p->bodies, p->q, q, p->lists.box);
+  msri_displacement_measure(&p->bodies, p->q, q, p->lists.box);
   msri_lists_begin(&p->lists, p->q, p->q);
-  msri_lists_cover_ways(&p->lists, p->q);
+  msri_lists_cover_paths(&p->lists, p->q);
   msri_lists_end(&p->lists, p->q);
   memcpy(p->q, q, 2 * p->n * sizeof *q);
 }
@@ -342,13 +342,13 @@ static void motions_hold_for_every_mass(void **unused) {
       q[i] = c * p.q[i] - s * p.q[n + i] + far + uniform(&dice, -noise, noise);
       q[n + i] = s * p.q[i] + c * p.q[n + i] - far + uniform(&dice, -noise, noise);
     }
-    msri_motion_measure(&p.bodies, p.q, q, p.lists.box);
+    msri_displacement_measure(&p.bodies, p.q, q, p.lists.box);
     for (size_t b = 0; b < 2; b++) {
-      const msri_motion m = msri_motion_of(&p.lists.box[b]);
-      const double change = msri_motion_change(&p.bodies, b, p.q, q);
+      const msri_displacement m = msri_displacement_of(&p.lists.box[b]);
+      const double change = msri_displacement_change(&p.bodies, b, p.q, q);
       assert_true(change <= 3 * noise + 1e-9); // the best turn leaves the noise, and rounding
       for (size_t i = b * n / 2; i < (b + 1) * n / 2; i++) {
-        const double dx = q[i] - p.q[i] - m.way[0], dy = q[n + i] - p.q[n + i] - m.way[1];
+        const double dx = q[i] - p.q[i] - m.path[0], dy = q[n + i] - p.q[n + i] - m.path[1];
         assert_true(hypot(dx, dy) <= m.spread);
         const size_t j = b * n / 2 + random_below(&dice, n / 2);
         const double before = hypot(p.q[i] - p.q[j], p.q[n + i] - p.q[n + j]);

@@ -65,12 +65,6 @@ static void assert_each_failure_is_told(bool (*attempt)(void), size_t least) {
 
 /* ---- Scenes */
 
-static msr_status add_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
-                              double *fy) {
-  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
-  return MSR_OK;
-}
-
 static const msr_force mine = {.name = "mine",
                                .summary = "nothing",
                                .uses_velocity = true,

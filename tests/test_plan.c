@@ -264,12 +264,6 @@ static void stable_step_of_mixtures(void **unused) {
   }
 }
 
-static msr_status add_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
-                              double *fy) {
-  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
-  return MSR_OK;
-}
-
 static msr_status rate_of_100(const void *self, const msr_view *s, double *omega2, double *gamma) {
   (void)self, (void)s, (void)omega2;
   *gamma = 100;
@@ -500,7 +494,7 @@ static void a_method_without_a_limit_of_damping_is_planned(void **unused) {
 
 static void what_cannot_be_planned_is_refused(void **unused) {
   (void)unused;
-  static const msr_integrator nothing = {.name = "n", .summary = "s"};
+  static const msr_integrator blank = {.name = "n", .summary = "s"};
   const msr_conf hard = {0.005, 0, 0.1, 1e300, 1, 1};
   msr_plan *plan = NULL;
   msr_error err;
@@ -516,7 +510,7 @@ static void what_cannot_be_planned_is_refused(void **unused) {
 
   scene = block(0.005, 0);
   plan = NULL;
-  const msr_plan_options lame = {.integrator = &nothing};
+  const msr_plan_options lame = {.integrator = &blank};
   assert_int_equal(msr_plan_create(scene, &lame, &plan, &err), MSR_EUSAGE);
   assert_string_equal(err.message, "an integrator needs at least name, summary and step");
   must(msr_scene_add_force(scene, &msr_force_push, &(msr_push){25, 1, 0}, &why));

@@ -4,6 +4,7 @@
 #include "formats/ppm.h"
 
 #include "alloc.h"
+#include "files.h"
 
 #include <setjmp.h>
 #include <signal.h>
@@ -225,15 +226,6 @@ static void no_part_of_a_picture_is_another_one(void **state) {
     }
 }
 
-/* The name of a file of this test. */
-static const char *scratch(const char *name) {
-  static char path[512];
-  const char *directory = getenv("TMPDIR");
-  snprintf(path, sizeof path, "%s/msr-ppm-%ld-%s", directory ? directory : "/tmp", (long)getpid(),
-           name);
-  return path;
-}
-
 /* Netpbm wants white space after the last number. */
 static void put_for_netpbm(const char *path, const char *bytes, size_t size) {
   FILE *stream = fopen(path, "w");
@@ -259,7 +251,7 @@ static bool read_by_netpbm(const char *path, size_t width, size_t height, unsign
 
 static void netpbm_reads_the_same(void **state) {
   (void)state;
-  const char *path = scratch("netpbm.ppm");
+  const char *path = path_of("netpbm.ppm");
   if (system("command -v ppmtoppm pamdepth > /dev/null") != 0) skip();
   for (size_t i = 0; i < LENGTH(goods); i++) {
     const struct good *g = &goods[i];
@@ -299,7 +291,7 @@ static void absurd_sizes_are_refused(void **state) {
 
 static void what_is_written_reads_back(void **state) {
   (void)state;
-  const char *path = scratch("written.ppm");
+  const char *path = path_of("written.ppm");
   msr_picture *picture = create(37, 11), *back = NULL;
   for (size_t i = 0; i < 3 * 37 * 11; i++) picture->rgb[i] = (unsigned char)(i * 7);
   bool more = true;
@@ -352,12 +344,12 @@ static void a_full_disk_leaves_nothing(void **state) {
   const struct rlimit limit = {1000, before.rlim_max};
   signal(SIGXFSZ, SIG_IGN);
   setrlimit(RLIMIT_FSIZE, &limit);
-  const msr_status status = msr_picture_write(white, scratch("full.ppm"), &err);
+  const msr_status status = msr_picture_write(white, path_of("full.ppm"), &err);
   setrlimit(RLIMIT_FSIZE, &before);
   signal(SIGXFSZ, SIG_DFL);
   assert_int_equal(status, MSR_EIO);
   assert_non_null(strstr(err.message, "full.ppm: cannot write it: File too large; "));
-  assert_int_not_equal(access(scratch("full.ppm"), F_OK), 0);
+  assert_int_not_equal(access(path_of("full.ppm"), F_OK), 0);
   msr_picture_free(white);
 }
 
@@ -371,7 +363,7 @@ static bool attempt_create(void) {
 
 static bool attempt_read(void) {
   msr_picture *picture = NULL;
-  const bool done = msr_picture_read(scratch("alloc.ppm"), &picture, NULL, NULL) == MSR_OK;
+  const bool done = msr_picture_read(path_of("alloc.ppm"), &picture, NULL, NULL) == MSR_OK;
   assert_int_equal(picture != NULL, done);
   msr_picture_free(picture);
   return done;
@@ -380,7 +372,7 @@ static bool attempt_read(void) {
 static bool attempt_write(void) {
   unsigned char rgb[] = {65, 66, 67};
   const msr_picture picture = {1, 1, rgb};
-  return msr_picture_write(&picture, scratch("alloc.ppm"), NULL) == MSR_OK;
+  return msr_picture_write(&picture, path_of("alloc.ppm"), NULL) == MSR_OK;
 }
 
 static void running_out_of_memory_is_an_error(void **state) {
@@ -388,7 +380,7 @@ static void running_out_of_memory_is_an_error(void **state) {
   assert_int_equal(alloc_fail_each(attempt_create), 2);
   assert_int_equal(alloc_fail_each(attempt_write), 1);
   assert_int_equal(alloc_fail_each(attempt_read), 3);
-  unlink(scratch("alloc.ppm"));
+  unlink(path_of("alloc.ppm"));
 }
 
 int main(void) {
@@ -405,5 +397,5 @@ int main(void) {
       cmocka_unit_test(a_full_disk_leaves_nothing),
       cmocka_unit_test(running_out_of_memory_is_an_error),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, make_directory, remove_directory);
 }

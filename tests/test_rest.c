@@ -1,36 +1,12 @@
 /* test_rest.c - objects at rest are left out of steps, and nothing tells: places, velocities,
  * collisions and energies are, bit by bit, those of plans that leave nothing out, a force that does
- * nothing having them step all masses; whatever else changes a state wakes them. */
+ * nothing having them step all masses; whatever else changes a state wakes them.
+ * link: --wrap=msri_processors */
 #include "files.h"
+#include "processors.h"
 #include "scenes.h"
 
 #include "plan/state.h"
-
-/* ---- A force that does nothing */
-
-static msr_status add_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
-                              double *fy) {
-  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
-  return MSR_OK;
-}
-
-static double no_energy(const void *self, const msr_view *s) {
-  (void)self, (void)s;
-  return 0;
-}
-
-static msr_status nothing_between(const void *self, void *scratch, const msr_view *s,
-                                  const msr_view *to, double *fx, double *fy) {
-  (void)to;
-  return add_nothing(self, scratch, s, fx, fy);
-}
-
-static const msr_force nothing = {.name = "nothing",
-                                  .summary = "0",
-                                  .conservative = true,
-                                  .add = add_nothing,
-                                  .energy = no_energy,
-                                  .between = nothing_between};
 
 /* ---- Scenes */
 

@@ -239,17 +239,6 @@ static msr_status refuse_between(const void *self, void *scratch, const msr_view
   return count(self);
 }
 
-static msr_status add_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
-                              double *fy) {
-  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
-  return MSR_OK;
-}
-
-static double no_energy(const void *self, const msr_view *s) {
-  (void)self, (void)s;
-  return 0;
-}
-
 static const msr_force refusing[] = {{.name = "refusing",
                                       .summary = "0",
                                       .conservative = true,

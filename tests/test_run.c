@@ -531,7 +531,7 @@ static void a_part_of_a_frame_is_forgotten(void **unused) {
   must(msr_frames_open(plan, path_of("a"), &style, false, &sink, &why));
   must(msr_renderer_create(plan, &style, &renderer, &why));
   assert_int_equal(write_within(&sink, state, SIZE / 8, &err), MSR_EIO);
-  assert_non_null(strstr(err.message, "File too large; make it smaller"));
+  assert_non_null(strstr(err.message, "File too large; raise the limit"));
   const msr_arrays a = msr_state_edit(state);
   for (size_t m = 0; m < MASSES; m++) a.x[m] += 3;
   must(write_within(&sink, state, sizeof bytes, &why));

@@ -337,19 +337,13 @@ static void bad_springs_and_anchors_are_refused(void **unused) {
   msr_scene_free(scene);
 }
 
-static msr_status do_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
-                             double *fy) {
-  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
-  return MSR_OK;
-}
-
 static void bad_forces_are_refused(void **unused) {
   (void)unused;
-  static const msr_force nameless = {.summary = "s", .add = do_nothing};
-  static const msr_force mute = {.name = "n", .add = do_nothing};
+  static const msr_force nameless = {.summary = "s", .add = add_nothing};
+  static const msr_force mute = {.name = "n", .add = add_nothing};
   static const msr_force lame = {.name = "n", .summary = "s"};
   static const msr_force lossless = {
-      .name = "n", .summary = "s", .add = do_nothing, .conservative = true};
+      .name = "n", .summary = "s", .add = add_nothing, .conservative = true};
   const struct {
     const msr_force *force;
     const void *params;

@@ -1,39 +1,18 @@
 /* test_sweep.c - steps row by row have the same bits as steps of all masses at once, which a force
  * of one's own that does nothing brings back: whatever the shape, method, threads and pieces.
  *
- * link: --wrap=pthread_create */
+ * link: --wrap=pthread_create --wrap=msri_processors */
 #include "plan/plan.h"
 #include "sweep/sweep.h"
 
 #include "files.h"
+#include "processors.h"
 #include "shapes.h"
 
 #include <errno.h>
 #include <pthread.h>
 
 /* ---- The same scene by both ways */
-
-static msr_status add_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
-                              double *fy) {
-  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
-  return MSR_OK;
-}
-static msr_status add_nothing_between(const void *self, void *scratch, const msr_view *s,
-                                      const msr_view *to, double *fx, double *fy) {
-  (void)to;
-  return add_nothing(self, scratch, s, fx, fy);
-}
-static double no_energy(const void *self, const msr_view *s) {
-  (void)self, (void)s;
-  return 0;
-}
-static const msr_force nothing = {.name = "nothing",
-                                  .summary = "0",
-                                  .conservative = true,
-                                  .ignores_start = true,
-                                  .add = add_nothing,
-                                  .energy = no_energy,
-                                  .between = add_nothing_between};
 
 enum { STILL, DRAG, WIND, AIRS };
 
@@ -156,7 +135,7 @@ static void shapes_have_the_same_bits(void **state) {
 /* ---- Each way to go through an object: see libmsr/sweep/sweep.c */
 
 /* One thread has patches of up to 12288 cells; rows in place where they are whole; else a ring.
- * More threads share what has 512 masses if there are few objects, and rows enough. */
+ * More threads share what has 8192 masses if there are few objects, and rows enough. */
 static void large_objects_have_the_same_bits(void **state) {
   (void)state;
   const trial trials[] = {
@@ -394,10 +373,12 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attr, thread_
 /* A state needs them, a plan doesn't; one that has no use for them doesn't ask. */
 static void threads_may_be_refused(void **state) {
   (void)state;
-  const trial t = trial_of(1);
+  const trial t = {&shapes[0], 130, 130, 1, 4, STILL, 0, 0.01, &msr_integrator_verlet, 1, 1};
+  const trial small = {&shapes[0], 13, 13, 1, 4, STILL, 0, 0.01, &msr_integrator_verlet, 1, 1};
   world w = open_by(&t, 3);
   msr_state *none = NULL;
   refused = true;
+  close_world(open_by(&small, 3));
   assert_int_equal(msr_state_create(w.plan, &none, &why), MSR_ENOMEM);
   assert_null(none);
   assert_non_null(strstr(why.message, "threads"));

@@ -25,7 +25,7 @@ static const struct advice {
     {EBADF, "check its name"},
     {EISDIR, "give a file, not a directory"},
     {ENOSPC, "free some space"},
-    {EFBIG, "make it smaller"},
+    {EFBIG, "raise the limit of file sizes (ulimit -f), or write to another disk"},
     {EPIPE, "what should read it has ended"},
     {0, "check the disk or the device"},
 };

@@ -26,6 +26,9 @@ static inline msri_pixel msri_pixel_at(const msr_picture *picture, size_t column
   return msri_pixel_of(msri_pixel_rgb(picture, column, row));
 }
 
+/* Of 4 or 8 neighbours: are those at the corners among them? */
+static inline bool msri_has_diagonals(int neighbours) { return neighbours == 8; }
+
 /* Neighbours in a row, from column `begin` to `end` - 1. */
 typedef struct msri_span {
   size_t begin, end;

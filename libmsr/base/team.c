@@ -84,8 +84,6 @@ void msri_team_run(msri_team *team, msri_team_work *work, void *self) {
   msri_team_wait(&team->ready, team->threads - 1);
 }
 
-unsigned msri_team_threads(const msri_team *team) { return team->threads; }
-
 /* Signals are for the program's own threads, but for those that a thread brings on itself. */
 static bool begin_thread(member *m) {
   static const int own[] = {SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, SIGTRAP, SIGSYS};

@@ -14,8 +14,6 @@ typedef void msri_team_work(void *self, unsigned thread);
 msr_status msri_team_create(unsigned threads, msri_team **team, msr_error *err);
 void msri_team_free(msri_team *team);
 
-unsigned msri_team_threads(const msri_team *team);
-
 /* All do the work; returns when all have. */
 void msri_team_run(msri_team *team, msri_team_work *work, void *self);
 

@@ -10,7 +10,7 @@
 /* Where boxes are apart lists are made for so many drifts. */
 static const double many = 64;
 
-/* Beyond this, in diameters, masses are better looked at on their ways. */
+/* Beyond this, in diameters, masses are better looked at on their paths. */
 static const double longest_skin = 1.6;
 
 static double loose(const msri_lists *w, double away) {
@@ -131,11 +131,11 @@ static bool list_two(msri_lists *w, const double *q0, size_t a, size_t b) {
 /* First boxes are widened for many drifts; where then they meet, for few. */
 static bool list_all(msri_lists *w, const double *q0, double most) {
   const size_t n = w->bodies->n;
-  msri_motion_measure(w->bodies, NULL, q0, w->box);
+  msri_displacement_measure(w->bodies, NULL, q0, w->box);
   w->kept->outer = (msri_range){0, 0};
   for (size_t b = 0; b < n; b++) {
-    const double way = msri_max(w->body[b].away, most);
-    w->body[b].outer = (msri_reach){true, msri_max(loose(w, way), tight(w, way)), 0};
+    const double path = msri_max(w->body[b].away, most);
+    w->body[b].outer = (msri_reach){true, msri_max(loose(w, path), tight(w, path)), 0};
     w->body[b].cluster = b;
   }
   sweep(w, q0, tighten);

@@ -12,7 +12,7 @@
 #include "contacts/flock.h"
 
 typedef struct msri_armed {
-  double left;    /* of the way that they can go [px] */
+  double left;    /* of the path that they can go [px] */
   unsigned waits; /* steps in which they are tested before it pays to ask again */
 } msri_armed;
 
@@ -22,24 +22,24 @@ typedef struct msri_armed {
 /* Of a step: x + h u, below twice the limit, is off by 2^-30 at most, and what is left by 2^-31. */
 #define MSRI_ARMED_ROUNDING 0x1p-28
 
-/* Is it known that they must be tested? Then the step's `way` needn't be found. */
+/* Is it known that they must be tested? Then the step's `path` needn't be found. */
 static inline bool msri_armed_waits(msri_armed *armed) {
   if (armed->waits == 0) return false;
   armed->waits--;
   return true;
 }
 
-/* No mass goes further than `way` along either axis: may the step be taken untested? Not if way is
- * no number. */
-static inline bool msri_armed_covers(msri_armed *armed, double way) {
-  armed->left -= way + MSRI_ARMED_ROUNDING;
+/* No mass goes further than `path` along either axis: may the step be taken untested? Not if path
+ * is no number. */
+static inline bool msri_armed_covers(msri_armed *armed, double path) {
+  armed->left -= path + MSRI_ARMED_ROUNDING;
   return armed->left >= 0;
 }
 
-/* They have been tested in a step of `way`, after which that is their clearance. */
-static inline void msri_armed_earn(msri_armed *armed, double way, double clearance) {
+/* They have been tested in a step of `path`, after which that is their clearance. */
+static inline void msri_armed_earn(msri_armed *armed, double path, double clearance) {
   enum { FEW = 4, REST = 15 };
-  const bool lasts = clearance > FEW * way;
+  const bool lasts = clearance > FEW * path;
   *armed = (msri_armed){lasts ? clearance : 0, lasts ? 0 : REST};
 }
 

@@ -1,6 +1,7 @@
-/* bodies.c - bodies by union and find (Galler & Fischer 1964, An improved equivalence algorithm):
- * a tree for each, the root being its first mass. */
+/* bodies.c - bodies by union and find: a tree for each, the root being its first mass. */
 #include "contacts/bodies.h"
+
+#include "base/trees.h"
 
 #include <stdlib.h>
 
@@ -10,27 +11,17 @@ static const uint32_t none = UINT32_MAX;
 
 /* ---- Trees */
 
-static uint32_t root_of(uint32_t *parent, uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-static void join(uint32_t *parent, uint32_t i, uint32_t j) {
-  const uint32_t a = root_of(parent, i), b = root_of(parent, j);
-  parent[a > b ? a : b] = a > b ? b : a;
-}
-
 static void grow_trees(size_t n, const msri_ties *ties, uint32_t *parent) {
-  for (size_t i = 0; i < n; i++) parent[i] = (uint32_t)i;
+  msri_trees_plant(n, parent);
   for (size_t i = 0; i < n; i++)
     for (size_t p = ties->first[i]; p < ties->first[i + 1]; p++)
-      join(parent, (uint32_t)i, ties->partner[p]);
+      msri_trees_join(parent, (uint32_t)i, ties->partner[p]);
 }
 
 /* of[i]: the root of i becomes the number of its body. `number` [n] is zeroed at first. */
 static size_t count_bodies(size_t n, uint32_t *of, uint32_t *number) {
   uint32_t bodies = 0, rest = none;
-  for (size_t i = 0; i < n; i++) of[i] = root_of(of, (uint32_t)i), number[of[i]]++;
+  for (size_t i = 0; i < n; i++) of[i] = msri_trees_root(of, (uint32_t)i), number[of[i]]++;
   for (size_t i = 0; i < n; i++) {
     if (of[i] != i) continue;
     const bool few = number[i] < FEW;

@@ -1,5 +1,5 @@
 /* cells.h - a uniform grid of cells, hashed into buckets, and the search of neighbours in it; for
- * near.c and near_ways.c. */
+ * near.c and near_paths.c. */
 #ifndef MSRI_CELLS_H
 #define MSRI_CELLS_H
 
@@ -17,14 +17,14 @@ typedef struct msri_search {
   const double *q0;
   double size, reach; /* of a cell, of a pair [px] */
   bool between;       /* of two sets: of a pair either may be the one sorted */
-  const msri_ways *ways;
+  const msri_paths *paths;
   const msri_meets *meets; /* NULL: all within reach */
 } msri_search;
 
 static inline double msri_squared(double x, double y) { return x * x + y * y; }
 
 static inline bool msri_search_wants(const msri_search *s, size_t i, size_t j) {
-  return !s->meets || s->meets->meet(s->meets->self, s->ways, i, j);
+  return !s->meets || s->meets->meet(s->meets->self, s->paths, i, j);
 }
 
 static inline bool msri_pair_precedes(msri_pair a, msri_pair b) {

@@ -3,7 +3,7 @@
  * (Rosenfeld & Pfaltz 1968, Distance functions on digital pictures, Pattern Recognition 1, 33).
  *
  * From anywhere in a pixel at distance d it's d - 1 at least to the nearest support, along one axis
- * or the other, and none is met on a way that is no longer along both. Outside it's as far as to
+ * or the other, and none is met on a path that is no longer along both. Outside it's as far as to
  * the picture, too. A ring of pixels stands for all that is outside: supports if the border is
  * closed. */
 #include "contacts/armed.h"

@@ -1,4 +1,4 @@
-/* disc_pair.h - two discs: whether their ways meet, and what a collision makes of them. */
+/* disc_pair.h - two discs: whether their paths meet, and what a collision makes of them. */
 #ifndef MSRI_DISC_PAIR_H
 #define MSRI_DISC_PAIR_H
 
@@ -10,15 +10,15 @@ typedef struct msri_vec {
   double x, y;
 } msri_vec;
 
-/* Disc j as seen from i: it was at `from`, and goes `way`. */
+/* Disc j as seen from i: it was at `from`, and goes `path`. */
 typedef struct msri_disc_pair {
   size_t i, j;
-  msri_vec from, way;
+  msri_vec from, path;
   double diameter;
   double apart; /* discs that overlap are to be moved apart by up to so much in this step [px] */
 } msri_disc_pair;
 
-/* A way may come as near as this between two free places, so that what slides around a disc in
+/* A path may come as near as this between two free places, so that what slides around a disc in
  * straight steps does so freely; and rounding; both of squares. */
 static const double msri_disc_graze = 0.96, msri_disc_rounding = 1e-12;
 
@@ -29,9 +29,9 @@ static inline double msri_disc_pair_floor(const msri_disc_pair *p, double from2)
 }
 
 /* Would the discs come too close: nearer than their diameter or, if they overlap, than they were?
- * A way that only grazes, between two places that are free, isn't too close. */
+ * A path that only grazes, between two places that are free, isn't too close. */
 static inline bool msri_disc_pair_meets(const msri_disc_pair *p) {
-  const msri_vec r = p->from, w = p->way, to = {r.x + w.x, r.y + w.y};
+  const msri_vec r = p->from, w = p->path, to = {r.x + w.x, r.y + w.y};
   const double least = msri_disc_pair_floor(p, r.x * r.x + r.y * r.y);
   const double least2 = least * least * (1 - msri_disc_rounding);
   if (to.x * to.x + to.y * to.y < least2) return true;

@@ -69,7 +69,7 @@ void msri_discs_moved(const msri_discs *discs, void *room) {
 static bool drifts_alone(work *c, double h, const double *u, double *q) {
   msri_lists *const w = &c->lists;
   if (!msri_lists_is_idle(w, q)) return false;
-  msri_motion_measure(w->bodies, NULL, u, w->box);
+  msri_displacement_measure(w->bodies, NULL, u, w->box);
   if (!msri_lists_foresees(w, h)) return false;
   msri_add_scaled(2 * c->d.n, h, u, q);
   msri_lists_end(w, q);
@@ -89,7 +89,7 @@ uint64_t msri_discs_drift(const msri_obstacles *all, double h, const double *u, 
     met = supports->drift(supports->self, h, &flock, debts);
   else
     msri_add_scaled(2 * d->n, h, u, q);
-  msri_motion_measure(c.lists.bodies, c.vector, q, c.lists.box);
+  msri_displacement_measure(c.lists.bodies, c.vector, q, c.lists.box);
   d->debts = supports->drift ? debts : NULL;
   d->q0 = c.vector, d->q = q, d->v = v;
   d->kick = a, d->unit = h;
@@ -105,7 +105,7 @@ uint64_t msri_discs_bounce(const msri_obstacles *all, double h, const double *q0
   double *const kick = c.vector;
   for (size_t i = 0; i < 2 * d->n; i++) kick[i] = v[i] - v0[i];
   if (supports->bounce) met = supports->bounce(supports->self, d->n, h, q0, v0, q, v, debts);
-  msri_motion_measure(c.lists.bodies, q0, q, c.lists.box);
+  msri_displacement_measure(c.lists.bodies, q0, q, c.lists.box);
   d->q0 = q0, d->q = q, d->v = v;
   d->kick = kick, d->unit = 1, d->behind = 0.5;
   d->debts = supports->bounce ? debts : NULL;

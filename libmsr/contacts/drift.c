@@ -1,14 +1,14 @@
-/* drift.c - ways and velocities of discs that meet, changed together.
+/* drift.c - paths and velocities of discs that meet, changed together.
  *
- * A free drift is d = h v. Whatever changes a way by D changes the velocity by (1 + e) D / h. If in
- * the end no pair's way leads them together, and all D are sums of s n / m with s > 0, n the normal
- * of a pair, then <d, h v - d> >= 0 in the metric of the masses, and so the new velocity has no
- * more kinetic energy than v, and just as much if e = 1 and nobody was pushed away from whom he had
- * met (Moreau 1988, Unilateral contact and dry friction in finite freedom dynamics). And as the way
- * is the mean of both velocities if e = 1, the work of the forces on it is what it should be: no
- * heat.
+ * A free drift is d = h v. Whatever changes a path by D changes the velocity by (1 + e) D / h. If
+ * in the end no pair's path leads them together, and all D are sums of s n / m with s > 0, n the
+ * normal of a pair, then <d, h v - d> >= 0 in the metric of the masses, and so the new velocity has
+ * no more kinetic energy than v, and just as much if e = 1 and nobody was pushed away from whom he
+ * had met (Moreau 1988, Unilateral contact and dry friction in finite freedom dynamics). And as the
+ * path is the mean of both velocities if e = 1, the work of the forces on it is what it should be:
+ * no heat.
  *
- * Slow contacts come to rest where e < 1. Half a kick is still to come: ways and velocities are
+ * Slow contacts come to rest where e < 1. Half a kick is still to come: paths and velocities are
  * changed as if e were 1, which alone leaves at rest what was at rest; discs go as near as
  * touching; and then what is left of the normal velocity at the end of the step, v + h a / 2, is
  * taken from pairs that touch, one after the other. Each time that only loses energy. */
@@ -61,8 +61,8 @@ static void obstruct(msri_drift *d, size_t i) {
 
 /* Would it go further than it may? */
 static bool is_too_far(const msri_drift *d, size_t i, msri_vec n, double s) {
-  const msri_vec way = msri_drift_way_of(d, i);
-  const double x = way.x + s * n.x, y = way.y + s * n.y;
+  const msri_vec path = msri_drift_path_of(d, i);
+  const double x = path.x + s * n.x, y = path.y + s * n.y;
   return x * x + y * y > d->most * d->most;
 }
 
@@ -91,7 +91,7 @@ static void push_apart(msri_drift *d, const msri_disc_pair *p, msri_vec n, doubl
   const double speed = approach(d, p, n), m = mj * of_j;
   const msri_work w = {-m * speed * s, m * s * s};
   const double f = s * msri_drift_allowed(d, &w, factor(d, is_slow(d, speed, i, j)));
-  const msri_vec di = msri_drift_way_of(d, i), dj = msri_drift_way_of(d, j);
+  const msri_vec di = msri_drift_path_of(d, i), dj = msri_drift_path_of(d, j);
   msri_drift_redirect(d, i, (msri_vec){di.x + s * of_i * n.x, di.y + s * of_i * n.y});
   msri_drift_redirect(d, j, (msri_vec){dj.x + s * of_j * n.x, dj.y + s * of_j * n.y});
   msri_drift_speed_up(d, i, f * of_i * n.x, f * of_i * n.y);
@@ -104,7 +104,7 @@ bool msri_drift_collide(msri_drift *d, size_t i, size_t j) {
   const msri_disc_pair p = msri_drift_pair(d, i, j);
   if (!msri_disc_pair_meets(&p)) return false;
   const msri_vec n = msri_disc_pair_normal(&p, d->restitution);
-  const double s = gap(d, &p, n) - (p.way.x * n.x + p.way.y * n.y);
+  const double s = gap(d, &p, n) - (p.path.x * n.x + p.path.y * n.y);
   if (!(s > 0)) return false;
   push_apart(d, &p, n, s);
   obstruct(d, i);

@@ -41,8 +41,8 @@ static inline double msri_drift_mass(const msri_drift *d, size_t i) {
 static inline msri_disc_pair msri_drift_pair(const msri_drift *d, size_t i, size_t j) {
   const double *x0 = d->q0, *y0 = x0 + d->n, *x = d->q, *y = x + d->n;
   const msri_vec from = {x0[j] - x0[i], y0[j] - y0[i]};
-  const msri_vec way = {(x[j] - x0[j]) - (x[i] - x0[i]), (y[j] - y0[j]) - (y[i] - y0[i])};
-  return (msri_disc_pair){i, j, from, way, d->diameter, d->parts ? d->apart : 0};
+  const msri_vec path = {(x[j] - x0[j]) - (x[i] - x0[i]), (y[j] - y0[j]) - (y[i] - y0[i])};
+  return (msri_disc_pair){i, j, from, path, d->diameter, d->parts ? d->apart : 0};
 }
 
 /* ---- One mass */
@@ -74,13 +74,13 @@ static inline double msri_drift_slow_speed(const msri_drift *d, size_t i, size_t
   return 2 * (sqrt(a.x * a.x + a.y * a.y) + sqrt(b.x * b.x + b.y * b.y));
 }
 
-static inline msri_vec msri_drift_way_of(const msri_drift *d, size_t i) {
+static inline msri_vec msri_drift_path_of(const msri_drift *d, size_t i) {
   return (msri_vec){d->q[i] - d->q0[i], d->q[d->n + i] - d->q0[d->n + i]};
 }
 
-/* It goes `way` now. */
-static inline void msri_drift_redirect(const msri_drift *d, size_t i, msri_vec way) {
-  d->q[i] = d->q0[i] + way.x, d->q[d->n + i] = d->q0[d->n + i] + way.y;
+/* It goes `path` now. */
+static inline void msri_drift_redirect(const msri_drift *d, size_t i, msri_vec path) {
+  d->q[i] = d->q0[i] + path.x, d->q[d->n + i] = d->q0[d->n + i] + path.y;
   d->pass[i] = d->passes;
 }
 
@@ -96,7 +96,7 @@ static inline bool msri_drift_as_it_was(const msri_drift *d, size_t i, size_t j)
 
 /* ---- Energy */
 
-/* What a change of ways by D does to the kinetic energy if velocities change by f D: the sum of
+/* What a change of paths by D does to the kinetic energy if velocities change by f D: the sum of
  * f m v.D + f^2 m D.D / 2. */
 typedef struct msri_work {
   double linear, square;

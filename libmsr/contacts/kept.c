@@ -69,9 +69,9 @@ static void keep_energy(const msri_supports *s, int axis, msri_leg *leg) {
 }
 
 /* The mass stays on its support; friction, too, holds it, or slows it. Does it hold? */
-static bool rest(const msri_supports *s, int axis, double way, msri_leg *leg) {
+static bool rest(const msri_supports *s, int axis, double path, msri_leg *leg) {
   const double before = leg->v[axis], kick = leg->h / 2;
-  const bool turns = s->options.restitution < 1, reflected = !turns && way * before > 0;
+  const bool turns = s->options.restitution < 1, reflected = !turns && path * before > 0;
   const double after = turns ? -kick * leg->a[axis] : reflected ? -before : before;
   const double most = s->options.friction * fabs(before - after);
   const double slip = leg->v[!axis] + kick * leg->a[!axis];
@@ -85,11 +85,11 @@ static bool rest(const msri_supports *s, int axis, double way, msri_leg *leg) {
 }
 
 /* A support is in the way along an axis. Does friction hold the mass along the other one, too? */
-static bool stop(const msri_supports *s, int axis, double way, msri_leg *leg) {
+static bool stop(const msri_supports *s, int axis, double path, msri_leg *leg) {
   const double before = leg->v[axis];
-  if (msri_supports_rests(s, way, before, leg->a[axis], leg->h)) return rest(s, axis, way, leg);
-  msri_supports_reflect(s, way, &leg->v[axis], &leg->v[!axis]);
-  if (way * before > 0) keep_energy(s, axis, leg);
+  if (msri_supports_rests(s, path, before, leg->a[axis], leg->h)) return rest(s, axis, path, leg);
+  msri_supports_reflect(s, path, &leg->v[axis], &leg->v[!axis]);
+  if (path * before > 0) keep_energy(s, axis, leg);
   return false;
 }
 
@@ -121,7 +121,7 @@ static void owe(msri_debts *debts, size_t mass, const msri_leg *leg) {
 static unsigned walk(const msri_supports *s, double h, const msri_flock *f, size_t k,
                      const double *to, msri_debts *debts) {
   msri_leg leg = {.h = h,
-                  .a = {f->ax ? f->ax[k] : 0, f->ax ? f->ay[k] : 0},
+                  .a = {f->ax ? f->ax[k] : 0, f->ay ? f->ay[k] : 0},
                   .x = {f->x[k], f->y[k]},
                   .v = {f->vx[k], f->vy[k]},
                   .follows = debts != NULL};
@@ -136,7 +136,7 @@ static uint64_t drift(const void *self, double h, const msri_flock *flock, msri_
   return msri_supports_drift(self, h, flock, debts, walk);
 }
 
-/* Half of the velocity's change comes before the way, half after it, so that a bounce costs no
+/* Half of the velocity's change comes before the drift, half after it, so that a bounce costs no
  * energy. */
 static uint64_t bounce(const void *self, size_t n, double h, const double *q0, const double *v0,
                        double *q, double *v, msri_debts *debts) {

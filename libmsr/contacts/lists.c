@@ -54,11 +54,11 @@ bool msri_lists_store(msri_lists *w, msri_range *range) {
 /* ---- Pairs of one body */
 
 /* Where form changes fast a larger skin holds longer, at the price of more pairs to look at. */
-static double skin_for(const msri_lists *w, const msri_listed *body, double way) {
+static double skin_for(const msri_lists *w, const msri_listed *body, double path) {
   const double most = msri_most_skin * w->diameter, least = msri_least_skin * w->diameter;
   const bool again =
       body->inner.skin > 0 && (double)(w->kept->drifts - body->listed) < msri_many_drifts;
-  return msri_max(1.25 * way, again ? msri_min(2 * body->inner.skin, most) : least);
+  return msri_max(1.25 * path, again ? msri_min(2 * body->inner.skin, most) : least);
 }
 
 static void list_inner(msri_lists *w, size_t b, const double *q0, double skin) {
@@ -82,15 +82,15 @@ static void list_inner(msri_lists *w, size_t b, const double *q0, double skin) {
 /* How far its masses are from where they would be in the form that it had. */
 static void look_again(msri_lists *w, size_t b, const double *q0) {
   msri_reach *const inner = &w->body[b].inner;
-  if (inner->known) inner->used = msri_motion_change(w->bodies, b, w->at, q0);
+  if (inner->known) inner->used = msri_displacement_change(w->bodies, b, w->at, q0);
 }
 
 /* False: there's no room for the pairs. */
-static bool cover_inner(msri_lists *w, size_t b, const double *q0, double way) {
+static bool cover_inner(msri_lists *w, size_t b, const double *q0, double path) {
   const msri_reach *inner = &w->body[b].inner;
-  if (msri_reach_covers(inner, way)) return true;
+  if (msri_reach_covers(inner, path)) return true;
   look_again(w, b, q0);
-  if (!msri_reach_covers(inner, way)) list_inner(w, b, q0, skin_for(w, &w->body[b], way));
+  if (!msri_reach_covers(inner, path)) list_inner(w, b, q0, skin_for(w, &w->body[b], path));
   return inner->known;
 }
 
@@ -105,35 +105,35 @@ static void forget(msri_lists *w) {
 
 /* ---- A drift */
 
-void msri_lists_set_ways(msri_lists *w) {
-  const size_t n = w->bodies->n;
+void msri_lists_set_paths(msri_lists *lists) {
+  const size_t n = lists->bodies->n;
   double mean[2] = {0, 0}, sound = 0;
   for (size_t b = 0; b < n; b++) {
-    const msri_motion m = w->body[b].motion = msri_motion_of(&w->box[b]);
-    if (m.spread < (double)INFINITY) mean[0] += m.way[0], mean[1] += m.way[1], sound++;
+    const msri_displacement m = lists->body[b].displacement = msri_displacement_of(&lists->box[b]);
+    if (m.spread < (double)INFINITY) mean[0] += m.path[0], mean[1] += m.path[1], sound++;
   }
   for (size_t b = 0; b < n; b++) {
-    const msri_motion m = w->body[b].motion;
-    const double x = m.way[0] - mean[0] / sound, y = m.way[1] - mean[1] / sound;
-    w->body[b].away = n > 1 ? sqrt(x * x + y * y) * msri_more + m.spread : 0;
+    const msri_displacement m = lists->body[b].displacement;
+    const double x = m.path[0] - mean[0] / sound, y = m.path[1] - mean[1] / sound;
+    lists->body[b].away = n > 1 ? sqrt(x * x + y * y) * msri_more + m.spread : 0;
   }
 }
 
-void msri_lists_begin(msri_lists *w, const double *q0, const double *q) {
-  const bool moved = !q || w->kept->q != q;
-  msri_lists_set_ways(w);
-  for (size_t b = 0; b < w->bodies->n; b++) {
-    w->body[b].hot = false;
+void msri_lists_begin(msri_lists *lists, const double *q0, const double *q) {
+  const bool moved = !q || lists->kept->q != q;
+  msri_lists_set_paths(lists);
+  for (size_t b = 0; b < lists->bodies->n; b++) {
+    lists->body[b].hot = false;
     if (!moved) continue;
-    w->body[b].outer.known = false;
-    look_again(w, b, q0);
+    lists->body[b].outer.known = false;
+    look_again(lists, b, q0);
   }
 }
 
-static bool cover_ways(msri_lists *w, const double *q0) {
+static bool cover_paths(msri_lists *w, const double *q0) {
   bool room = true;
   for (size_t b = 0; b < w->bodies->n; b++) {
-    const double spread = w->body[b].motion.spread;
+    const double spread = w->body[b].displacement.spread;
     const bool slow = spread <= msri_most_skin * w->diameter;
     w->body[b].swift = !slow || !cover_inner(w, b, q0, spread);
     room &= !slow || !w->body[b].swift;
@@ -141,10 +141,10 @@ static bool cover_ways(msri_lists *w, const double *q0) {
   return msri_lists_cover_outer(w, q0, 0) && room;
 }
 
-void msri_lists_cover_ways(msri_lists *w, const double *q0) {
-  if (cover_ways(w, q0)) return;
-  forget(w);
-  cover_ways(w, q0);
+void msri_lists_cover_paths(msri_lists *lists, const double *q0) {
+  if (cover_paths(lists, q0)) return;
+  forget(lists);
+  cover_paths(lists, q0);
 }
 
 /* So are swift ones: for all that is known. */
@@ -178,9 +178,10 @@ bool msri_lists_is_idle(const msri_lists *w, const double *q) {
   return idle;
 }
 
-/* Places are rounded, and ways with them. */
+/* Places are rounded, and paths with them. */
 static double rounding_of(const msri_listed *body) {
-  return 8 * DBL_EPSILON * (body->far + fabs(body->motion.way[0]) + fabs(body->motion.way[1]));
+  return 8 * DBL_EPSILON *
+         (body->far + fabs(body->displacement.path[0]) + fabs(body->displacement.path[1]));
 }
 
 bool msri_lists_foresees(msri_lists *w, double h) {
@@ -191,24 +192,25 @@ bool msri_lists_foresees(msri_lists *w, double h) {
       const double one = h * w->box[b].low[d], other = h * w->box[b].high[d];
       w->box[b].low[d] = msri_min(one, other), w->box[b].high[d] = msri_max(one, other);
     }
-  msri_lists_set_ways(w);
+  msri_lists_set_paths(w);
   for (size_t b = 0; b < n && good; b++) {
     msri_listed *const body = &w->body[b];
     const double rounding = rounding_of(body);
-    body->motion.spread += rounding, body->away += rounding;
-    good = msri_reach_covers(&body->inner, body->motion.spread) &&
+    body->displacement.spread += rounding, body->away += rounding;
+    good = msri_reach_covers(&body->inner, body->displacement.spread) &&
            (n == 1 || msri_reach_covers(&body->outer, body->away));
   }
   return good;
 }
 
-void msri_lists_end(msri_lists *w, const double *q) {
-  for (size_t b = 0; b < w->bodies->n; b++) {
-    w->body[b].inner.used += w->body[b].motion.spread;
-    w->body[b].outer.used += w->body[b].away;
-    w->body[b].far +=
-        fabs(w->body[b].motion.way[0]) + fabs(w->body[b].motion.way[1]) + w->body[b].motion.spread;
+void msri_lists_end(msri_lists *lists, const double *q) {
+  for (size_t b = 0; b < lists->bodies->n; b++) {
+    lists->body[b].inner.used += lists->body[b].displacement.spread;
+    lists->body[b].outer.used += lists->body[b].away;
+    lists->body[b].far += fabs(lists->body[b].displacement.path[0]) +
+                          fabs(lists->body[b].displacement.path[1]) +
+                          lists->body[b].displacement.spread;
   }
-  w->kept->drifts++;
-  w->kept->q = q;
+  lists->kept->drifts++;
+  lists->kept->q = q;
 }

@@ -112,7 +112,7 @@ static bool is_free(const msri_supports *s, const double *from, const double *to
 static unsigned walk(const msri_supports *s, double h, const msri_flock *fl, size_t k,
                      const double *to, msri_debts *debts) {
   const double from[] = {fl->x[k], fl->y[k]};
-  const double a[] = {fl->ax ? fl->ax[k] : 0, fl->ax ? fl->ay[k] : 0};
+  const double a[] = {fl->ax ? fl->ax[k] : 0, fl->ay ? fl->ay[k] : 0};
   fl->x[k] = to[X], fl->y[k] = to[Y];
   if (is_free(s, from, to)) return 0;
   flight f = {.x = {from[X], from[Y]},

@@ -28,10 +28,10 @@ typedef struct msri_near {
   uint32_t *set;    /* [n]: for the caller */
 } msri_near;
 
-/* Straight ways from q0 to q. [2n] */
-typedef struct msri_ways {
+/* Straight paths from q0 to q. [2n] */
+typedef struct msri_paths {
   const double *q0, *q;
-} msri_ways;
+} msri_paths;
 
 /* Reserves an aligned part of a block; `block` may be NULL, to count only. */
 void *msri_near_part(char *block, size_t *end, size_t bytes);
@@ -48,15 +48,15 @@ void msri_near_list_at(msri_near *near, const double *q, double reach, const uin
 void msri_near_list_between(msri_near *near, const double *q, double reach, const uint32_t *a,
                             size_t n_a, const uint32_t *b, size_t n_b);
 
-/* Lists those pairs that `meet`, on ways of any length, of set[members], in no order: those shorter
- * than `slow` are found as pairs that rest. Masses whose way isn't finite are left out; what is in
- * the set afterwards is undefined. */
+/* Lists those pairs that `meet`, on paths of any length, of set[members], in no order: those
+ * shorter than `slow` are found as pairs that rest. Masses whose path isn't finite are left out;
+ * what is in the set afterwards is undefined. */
 typedef struct msri_meets {
-  bool (*meet)(const void *self, const msri_ways *ways, size_t i, size_t j);
+  bool (*meet)(const void *self, const msri_paths *paths, size_t i, size_t j);
   const void *self;
 } msri_meets;
-void msri_near_list_ways(msri_near *near, const msri_ways *ways, double slow,
-                         const msri_meets *meets, uint32_t *set, size_t members);
+void msri_near_list_paths(msri_near *near, const msri_paths *paths, double slow,
+                          const msri_meets *meets, uint32_t *set, size_t members);
 
 /* Puts pairs in ascending order; room [n] is for use. */
 void msri_near_order(msri_pair *pair, size_t n, msri_pair *room);

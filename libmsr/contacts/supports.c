@@ -1,5 +1,5 @@
-/* supports.c - fixed supports: the black pixels of a picture, and the first of them on a way, found
- * by walking the way pixel by pixel through their sides (Amanatides & Woo 1987, A fast voxel
+/* supports.c - fixed supports: the black pixels of a picture, and the first of them on a path,
+ * found by walking the path pixel by pixel through their sides (Amanatides & Woo 1987, A fast voxel
  * traversal algorithm for ray tracing). */
 #include "contacts/supports.h"
 
@@ -29,7 +29,7 @@ bool msri_supports_face(const msri_supports *s, const double *from, const double
     steps += labs(end[d] - cell[d]);
   }
   for (; steps > 0; steps--) {
-    double t[MSRI_AXES]; // when the next side is crossed, as a share of the way
+    double t[MSRI_AXES]; // when the next side is crossed, as a share of the path
     for (int d = 0; d < MSRI_AXES; d++)
       t[d] = cell[d] == end[d]
                  ? (double)INFINITY

@@ -16,7 +16,7 @@ typedef struct msri_supports {
   uint64_t solid[];        /* [width * height / 64, rounded up]; rows from the bottom: y is up */
 } msri_supports;
 
-/* The edge through which a way enters a support: the last coordinate outside. */
+/* The edge through which a path enters a support: the last coordinate outside. */
 typedef struct msri_face {
   int axis;          /* 0: x, 1: y */
   double edge, side; /* the support is above the edge, 1, or below it, -1 */
@@ -26,11 +26,11 @@ static inline bool msri_supports_solid(const msri_supports *s, size_t bit) {
   return s->solid[bit / MSRI_WORD] >> (bit % MSRI_WORD) & 1;
 }
 
-/* Reflects the normal velocity of a mass that was moving by `way`; friction slows the other. */
-static inline void msri_supports_reflect(const msri_supports *s, double way, double *normal,
+/* Reflects the normal velocity of a mass that was moving by `path`; friction slows the other. */
+static inline void msri_supports_reflect(const msri_supports *s, double path, double *normal,
                                          double *along) {
   const double before = *normal;
-  if (way * before > 0) *normal = -s->options.restitution * before;
+  if (path * before > 0) *normal = -s->options.restitution * before;
   const double most = s->options.friction * fabs(before - *normal);
   *along = fabs(*along) > most ? *along - copysign(most, *along) : 0;
 }
@@ -48,12 +48,12 @@ typedef struct msri_leg {
   bool follows;
 } msri_leg;
 
-/* Does a mass that moves by `way` into a support come back to it within two steps of h? It's
+/* Does a mass that moves by `path` into a support come back to it within two steps of h? It's
  * reflected from `speed`, and `a` presses it on the support. */
-static inline bool msri_supports_rests(const msri_supports *s, double way, double speed, double a,
+static inline bool msri_supports_rests(const msri_supports *s, double path, double speed, double a,
                                        double h) {
   const double e = s->options.restitution;
-  return (e < 1 || s->options.friction > 0) && way * a > 0 && e * fabs(speed) <= h * fabs(a);
+  return (e < 1 || s->options.friction > 0) && path * a > 0 && e * fabs(speed) <= h * fabs(a);
 }
 
 /* The mass of a leg goes to `to` [2] by the rule MSR_IMPACTS_KEPT. Returns the number of

@@ -153,7 +153,7 @@ static msr_status tie_picture(msri_mesh *mesh, const msr_scene *scene, msr_error
     const row *above = &rows[(at + 1) % 2];
     row *below = &rows[at % 2];
     read_row(scene->grid, at, below);
-    status = tie_row(mesh, scene->options.neighbours == 8, above, below, err);
+    status = tie_row(mesh, msri_has_diagonals(scene->options.neighbours), above, below, err);
     if (status == MSR_OK) status = attach_row(mesh, scene, at, below, err);
   }
   free(blocks);

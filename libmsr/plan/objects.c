@@ -1,10 +1,10 @@
 /* objects.c - connected components of a picture's masses, by its pieces: masses side by side in
  * a row without a gap. Pieces that touch those of the row above are united with them (Rosenfeld
- * & Pfaltz 1966, J. ACM 13, 471), in trees that are flattened as they are climbed (Tarjan 1975,
- * J. ACM 22, 215). */
+ * & Pfaltz 1966, J. ACM 13, 471). */
 #include "plan/objects.h"
 
 #include "base/pixel.h"
+#include "base/trees.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,35 +13,24 @@
 typedef struct found {
   size_t first;
   uint32_t row, column, count;
-  uint32_t parent; /* of its tree; itself: the root, which is the first of the object */
 } found;
 
 typedef struct finds {
-  found *at; /* [n] */
+  found *at;        /* [n] */
+  uint32_t *parent; /* [n]: trees, whose roots are the first of each object */
   size_t n, capacity, masses;
   msr_error *err;
 } finds;
-
-static uint32_t root_of(found *at, uint32_t s) {
-  while (at[s].parent != s) s = at[s].parent = at[at[s].parent].parent;
-  return s;
-}
-
-static void unite(found *at, uint32_t a, uint32_t b) {
-  const uint32_t p = root_of(at, a), q = root_of(at, b);
-  if (p < q) at[q].parent = p;
-  if (q < p) at[p].parent = q;
-}
 
 /* ---- Pieces */
 
 static msr_status find_in_row(finds *f, const msr_picture *picture, size_t row) {
   for (msri_span s = {0, 0}; msri_span_of(picture, row, MSRI_MASS, &s);) {
-    const uint32_t self = (uint32_t)f->n, count = (uint32_t)(s.end - s.begin);
+    const uint32_t count = (uint32_t)(s.end - s.begin);
     found *grown = msri_grow(f->at, &f->capacity, f->n + 1, sizeof *grown, "the objects", f->err);
     if (!grown) return MSR_ENOMEM;
     f->at = grown;
-    grown[f->n++] = (found){f->masses, (uint32_t)row, (uint32_t)s.begin, count, self};
+    grown[f->n++] = (found){f->masses, (uint32_t)row, (uint32_t)s.begin, count};
     f->masses += count;
   }
   return MSR_OK;
@@ -49,24 +38,34 @@ static msr_status find_in_row(finds *f, const msr_picture *picture, size_t row) 
 
 /* Unites those of a row, from..to-1, with those above, above..from-1, that they touch; `reach` is 1
  * if corners do. */
-static void unite_rows(found *at, size_t above, size_t from, size_t to, uint32_t reach) {
+static void unite_rows(finds *f, size_t above, size_t from, size_t to, uint32_t reach) {
+  const found *at = f->at;
   size_t a = above;
   for (size_t s = from; s < to; s++) {
     const uint32_t end = at[s].column + at[s].count + reach;
     while (a < from && at[a].column + at[a].count + reach <= at[s].column) a++;
-    for (size_t b = a; b < from && at[b].column < end; b++) unite(at, (uint32_t)b, (uint32_t)s);
+    for (size_t b = a; b < from && at[b].column < end; b++)
+      msri_trees_join(f->parent, (uint32_t)b, (uint32_t)s);
+  }
+}
+
+static void unite(finds *f, uint32_t reach) {
+  const found *at = f->at;
+  msri_trees_plant(f->n, f->parent);
+  for (size_t above = 0, from = 0, to = 0; from < f->n; above = from, from = to) {
+    while (to < f->n && at[to].row == at[from].row) to++;
+    if (at[above].row + 1 == at[from].row) unite_rows(f, above, from, to, reach);
   }
 }
 
 static msr_status find(finds *f, const msr_picture *picture, int neighbours) {
-  size_t above = 0;
   for (size_t row = 0; row < picture->height; row++) {
-    const size_t from = f->n;
     const msr_status status = find_in_row(f, picture, row);
     if (status != MSR_OK) return status;
-    unite_rows(f->at, above, from, f->n, neighbours == 8 ? 1 : 0);
-    above = from;
   }
+  f->parent = msri_alloc(f->n, sizeof *f->parent, "the objects", f->err);
+  if (!f->parent) return MSR_ENOMEM;
+  unite(f, msri_has_diagonals(neighbours) ? 1 : 0);
   return MSR_OK;
 }
 
@@ -88,10 +87,9 @@ static void extend(extent *e, const found *s) {
 }
 
 /* Extents of the objects, at the numbers of their roots. */
-static void measure(finds *f, extent *of) {
+static void measure(const finds *f, extent *of) {
   for (size_t s = 0; s < f->n; s++) {
-    const uint32_t root = root_of(f->at, (uint32_t)s);
-    f->at[s].parent = root;
+    const uint32_t root = f->parent[s] = msri_trees_root(f->parent, (uint32_t)s);
     extend(&of[root], &f->at[s]);
   }
 }
@@ -99,7 +97,7 @@ static void measure(finds *f, extent *of) {
 static void number(const finds *f, extent *of, msri_objects *o) {
   size_t next = 0;
   for (size_t s = 0; s < f->n; s++) {
-    if (f->at[s].parent != s) continue;
+    if (f->parent[s] != s) continue;
     of[s].number = o->n;
     of[s].next = next;
     const size_t rows = of[s].bottom - of[s].top + 1;
@@ -113,9 +111,9 @@ static void number(const finds *f, extent *of, msri_objects *o) {
 static void arrange(const finds *f, extent *of, msri_objects *o) {
   for (size_t s = 0; s < f->n; s++) {
     const found *from = &f->at[s];
-    extent *e = &of[from->parent];
+    extent *e = &of[f->parent[s]];
     const size_t row = o->object[e->number].row + (from->row - e->top);
-    const bool first = s == from->parent || o->row[row] == SIZE_MAX;
+    const bool first = s == f->parent[s] || o->row[row] == SIZE_MAX;
     if (first) o->row[row] = e->next;
     o->piece[e->next++] =
         (msri_piece){from->first, from->column - e->left, from->count, o->n_blocks};
@@ -127,7 +125,7 @@ static void arrange(const finds *f, extent *of, msri_objects *o) {
 static size_t count_rows(const finds *f, const extent *of, size_t *objects) {
   size_t rows = 0;
   for (size_t s = 0; s < f->n; s++) {
-    if (f->at[s].parent != s) continue;
+    if (f->parent[s] != s) continue;
     ++*objects;
     rows += of[s].bottom - of[s].top + 1;
   }
@@ -161,6 +159,7 @@ msr_status msri_objects_create(const msr_picture *picture, int neighbours, msri_
   if (status == MSR_OK) status = build(&f, objects, err);
   if (status != MSR_OK) msri_objects_clear(objects);
   free(f.at);
+  free(f.parent);
   return status;
 }
 

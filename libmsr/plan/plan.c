@@ -1,6 +1,7 @@
 /* plan.c - compiles a scene: masses, springs, what it calls for (see effects.c), the step. */
 #include "plan/plan.h"
 
+#include "base/processors.h"
 #include "integrators/tolerance.h"
 #include "plan/state.h"
 #include "sweep/sweep.h"
@@ -56,6 +57,13 @@ static void count_memory(msr_plan *plan) {
   f->state_bytes = msri_state_bytes(plan);
 }
 
+/* No more than can run at the same time: threads that wait for each other would take turns. */
+static unsigned threads_of(const msr_plan_options *options) {
+  const unsigned most = msri_processors();
+  if (options->threads == 0) return 1;
+  return options->threads < most ? options->threads : most;
+}
+
 /* What the scene calls for, and the steps. */
 static msr_status decide(msr_plan *plan, const msr_scene *scene, const msr_view *start,
                          const msr_plan_options *options, msr_error *err) {
@@ -105,6 +113,8 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan
   if (status == MSR_OK && msri_plan_sweeps(plan)) status = prepare_sweeps(plan, err);
   if (status != MSR_OK) return status;
   msri_plan_complete_effects(plan, &(msri_asked){options->integrator, options->substeps > 0});
+  plan->figures.threads = msri_plan_sweeps(plan) ? msri_sweep_threads(plan) : 1;
+  msri_plan_say_vectors(plan);
   count_memory(plan);
   return MSR_OK;
 }
@@ -141,7 +151,7 @@ msr_status msr_plan_create(const msr_scene *scene, const msr_plan_options *optio
                                      .impacts = options->impacts,
                                      .atol = tolerance.atol,
                                      .rtol = tolerance.rtol};
-  made->threads = options->threads > 0 ? options->threads : 1;
+  made->threads = threads_of(options);
   made->neighbours = scene->options.neighbours;
   status = compile(made, scene, options, err);
   if (status == MSR_OK)

@@ -67,7 +67,8 @@ struct msr_plan {
   bool driven;          /* a force drives: states follow its work */
   bool followed;        /* one of them doesn't tell its power: likewise, mass by mass */
   bool middle;          /* a force without between() acts in the middle of a step: likewise */
-  unsigned threads;     /* of a state */
+  unsigned threads;     /* that a state may step with */
+  char by_vectors[128]; /* what figures.by_vectors says */
   int neighbours;       /* of a mass of the picture: 4 or 8 */
   msri_objects objects; /* of the picture, if states sweep; */
   msri_bands bands;     /* or of the mesh that a program built */
@@ -155,6 +156,10 @@ msr_status msri_plan_call_for_effects(msr_plan *plan, const msr_scene *scene, co
 /* Completes the effects, once the steps are chosen, by what steps, by what is off, and by what each
  * takes. */
 void msri_plan_complete_effects(msr_plan *plan, const msri_asked *asked);
+
+/* Does the plan step row by row, or band by band? If not, the figures get the reason. */
+bool msri_plan_sweeps(const msr_plan *plan);
+void msri_plan_say_vectors(msr_plan *plan);
 
 /* Fills the costs of all effects that are on. */
 void msri_plan_count_costs(msr_plan *plan);

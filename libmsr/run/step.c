@@ -142,13 +142,13 @@ static msr_status follow(msr_state *state, uint64_t steps) {
   return status;
 }
 
-static msri_progress sweep_timed(msr_state *state, const msri_swept *swept, msri_course way,
+static msri_progress sweep_timed(msr_state *state, const msri_swept *swept, msri_course ahead,
                                  double most) {
   msri_meter *m = &state->meter;
   const size_t integrator = state->plan->row.integrator;
   msri_meter_turn(m, integrator);
   const double before = m->seconds ? m->seconds[integrator] : 0;
-  const msri_progress progress = msri_sweep_run(state->sweep, swept, way, most, state->fresh);
+  const msri_progress progress = msri_sweep_run(state->sweep, swept, ahead, most, state->fresh);
   state->fresh = progress.known;
   msri_meter_turn(m, integrator);
   if (m->seconds) msri_sweep_split(state->sweep, m->seconds[integrator] - before, m->seconds);
@@ -161,11 +161,11 @@ static msr_status sweep(msr_state *state, uint64_t end, const msri_poll *poll, b
   msri_still still = {0};
   const msri_swept swept = {state->q,       state->q + n,       state->v,     state->v + n,
                             state->scratch, state->meter.calls, state->armed, &still};
-  const msri_course way = {state->plan, state->iteration, state->substep,
-                           steps_to(state, end, poll)};
+  const msri_course ahead = {state->plan, state->iteration, state->substep,
+                             steps_to(state, end, poll)};
   msr_status status = msri_poll_call(poll, state);
   if (status != MSR_OK) return status;
-  const msri_progress progress = sweep_timed(state, &swept, way, most);
+  const msri_progress progress = sweep_timed(state, &swept, ahead, most);
   state->work.steps += progress.steps;
   state->meter.calls[state->plan->row.integrator] += progress.steps;
   state->evaluations += progress.evaluations;

@@ -52,38 +52,6 @@ struct msri_sweep {
   msri_stage stage[MSRI_MOST_STAGES];
 };
 
-/* ---- Which plans */
-
-static bool are_simple(const msr_plan *plan) {
-  int uniform = 0, relax = 0;
-  if (plan->n_terms == 0 || plan->term[0].force != &msr_force_springs) return false;
-  for (size_t i = 1; i < plan->n_terms; i++) {
-    const msr_force *force = plan->term[i].force;
-    if (!force->uniform == !force->relax || (force->relax && force->conservative)) return false;
-    uniform += force->uniform != NULL;
-    relax += force->relax != NULL;
-  }
-  return uniform <= 1 && relax <= 1;
-}
-
-/* Nothing but a picture? */
-static bool is_picture(const msr_plan *plan) {
-  const bool meets = msri_plan_meets(plan);
-  if (meets && (plan->discs || msri_plan_bounces(plan))) return false;
-  return plan->figures.masses == plan->n_picture && plan->mesh.n_added == 0;
-}
-
-/* Only springs that a program added, with nothing in their way? */
-static bool is_mesh(const msr_plan *plan) {
-  return plan->mesh.n_added == plan->mesh.springs.n && !plan->m && !msri_plan_meets(plan);
-}
-
-bool msri_plan_sweeps(const msr_plan *plan) {
-  const msr_plan_figures *f = &plan->figures;
-  return msri_splitting_drifts(f->integrator) > 0 && !f->leaps && f->anchors == 0 &&
-         are_simple(plan) && (is_picture(plan) || is_mesh(plan));
-}
-
 /* ---- Who does what */
 
 static bool is_small(const msr_plan *plan, const msri_object *object) {
@@ -139,12 +107,12 @@ static void widen(size_t *size, size_t least) {
 
 static bool has_bands(const msr_plan *plan) { return plan->bands.n > 0; }
 
-static unsigned threads_for(const msr_plan *plan) {
-  return has_bands(plan) ? msri_bands_parts(&plan->bands, plan->threads) : plan->threads;
+static unsigned parts_of_mesh(const msr_plan *plan) {
+  return msri_bands_parts(&plan->bands, plan->threads);
 }
 
 static room room_for_bands(const msr_plan *plan) {
-  const unsigned parts = threads_for(plan);
+  const unsigned parts = parts_of_mesh(plan);
   const int stages = msri_bands_stages(&plan->bands, parts);
   const size_t size = msri_bands_size(&plan->bands, parts, stages);
   return (room){.depth = stages, .parts = msri_round_up(size, LINE / sizeof(double))};
@@ -176,13 +144,27 @@ static room room_for(const msr_plan *plan) {
   return r;
 }
 
+/* No more than have something to do: an object, or a part of a large one. */
+static unsigned threads_for(const msr_plan *plan, const room *r) {
+  const msri_objects *o = &plan->objects;
+  if (has_bands(plan)) return parts_of_mesh(plan);
+  size_t most = o->n;
+  for (size_t n = 0; n < o->n; n++) widen(&most, parts_of(plan, &o->object[n], r->depth));
+  return most < plan->threads ? (unsigned)most : plan->threads;
+}
+
+unsigned msri_sweep_threads(const msr_plan *plan) {
+  const room r = room_for(plan);
+  return threads_for(plan, &r);
+}
+
 static size_t doubles_of(const room *r) { return r->patch + r->rows + r->parts; }
 
 static size_t bytes_of(const msr_plan *plan, const room *r) {
   const size_t thread = sizeof(worker) + doubles_of(r) * sizeof(double) + sizeof(double *) +
                         2 * sizeof(_Atomic unsigned);
   const size_t rest = plan->objects.n * (sizeof(bool) + 1);
-  return sizeof(msri_sweep) + threads_for(plan) * thread + r->shares * sizeof(double) + rest +
+  return sizeof(msri_sweep) + threads_for(plan, r) * thread + r->shares * sizeof(double) + rest +
          2 * LINE;
 }
 
@@ -225,7 +207,7 @@ msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error
   const room r = room_for(plan);
   msri_sweep *made = msri_alloc(1, bytes_of(plan, &r), "a state", err);
   if (!made) return MSR_ENOMEM;
-  made->threads = threads_for(plan);
+  made->threads = threads_for(plan, &r);
   made->depth = r.depth;
   made->alone = plan->objects.n <= plan->threads;
   made->pass = (msri_pass){.plan = plan,
@@ -364,15 +346,10 @@ static void work(void *self, unsigned thread) {
   me->turn = turn;
 }
 
-/* Is there nothing but one small object? Then the others wouldn't have anything to do. */
-static bool is_lone(const msr_plan *plan) {
-  return plan->objects.n == 1 && is_small(plan, plan->objects.object);
-}
-
 /* Takes the stages that are set. Returns the largest speed along an axis. */
 static double run_pass(msri_sweep *s, uint64_t *met) {
   double fastest = 0;
-  if (s->team && !is_lone(s->pass.plan))
+  if (s->team)
     msri_team_run(s->team, work, s);
   else
     work(s, 0);

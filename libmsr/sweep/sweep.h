@@ -8,14 +8,13 @@
 
 typedef struct msri_sweep msri_sweep;
 
-/* Does the plan sweep? Methods made of kicks and drifts do, where there's nothing but the picture's
- * springs, a weight and air. */
-bool msri_plan_sweeps(const msr_plan *plan);
-
 /* Memory and threads for it. MSR_ENOMEM. */
 msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error *err);
 void msri_sweep_free(msri_sweep *sweep);
 size_t msri_sweep_bytes(const msr_plan *plan);
+
+/* That it steps with, of those of the plan. */
+unsigned msri_sweep_threads(const msr_plan *plan);
 
 /* Objects that are left out, as steps don't change them; and all are stepped again, as something
  * else may have. */

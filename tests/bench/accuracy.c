@@ -1,32 +1,19 @@
 /* accuracy.c SCRIPT LIBRARY - what accuracy costs in time: libmsr against bare loops and against
  * other libraries, on a smooth problem and on two stiff ones. */
+#include "machine.h"
 #include "measure.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* ---- Printing */
 
-#ifdef __clang__
-static const char compiler[] = __VERSION__;
-#else
-static const char compiler[] = "gcc " __VERSION__;
-#endif
-
 static void print_machine(const char *scipy) {
-  char line[128], day[32], model[128] = "unknown machine";
-  const time_t now = time(NULL);
-  strftime(day, sizeof day, "%Y-%m-%d", localtime(&now));
-  FILE *cpus = fopen("/proc/cpuinfo", "r");
-  while (cpus && fgets(line, sizeof line, cpus))
-    if (sscanf(line, "model name : %127[^\n]", model) == 1) break;
-  if (cpus) fclose(cpus);
-  printf("%s, %s, %s, libmsr %s; one thread.\n", day, model, compiler, msr_version());
-  printf("Boost.Odeint %s, SUNDIALS %s, GSL %s, SciPy %s.\n", odeint_version(), sundials_version(),
-         gsl_version_text(), scipy);
+  bench_print_machine();
+  printf("; one thread.\nBoost.Odeint %s, SUNDIALS %s, GSL %s, SciPy %s.\n", odeint_version(),
+         sundials_version(), gsl_version_text(), scipy);
   printf("The vectors of SUNDIALS are the benchmark's: Debian's package isn't optimised.\n\n");
 }
 

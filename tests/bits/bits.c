@@ -2,6 +2,8 @@
  * with located impacts; and of the picture with what steps row by row, by several threads. */
 #include "msr.h"
 
+#include "../processors.h"
+
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,6 +13,13 @@ static msr_error err;
 static void check(msr_status status) {
   if (status == MSR_OK) return;
   fprintf(stderr, "%s\n", err.message);
+  exit(EXIT_FAILURE);
+}
+
+/* What meets nothing tells little. */
+static void check_contacts(const msr_state *state) {
+  if (msr_state_contacts(state) > 0) return;
+  fputs("no support was met\n", stderr);
   exit(EXIT_FAILURE);
 }
 
@@ -65,8 +74,10 @@ static void print_hash(const msr_scene *scene, const msr_integrator *integrator,
                         &plan, &err));
   check(msr_state_create(plan, &state, &err));
   const msr_arrays s = msr_state_edit(state);
-  for (size_t i = 0; i < msr_plan_describe(plan).masses; i++) s.vy[i] = -300; /* onto the pegs */
-  check(msr_state_step(state, integrator->adaptive ? 1 : 20, &err)); /* of many steps each */
+  for (size_t i = 0; i < msr_plan_describe(plan).masses; i++)
+    s.vy[i] = -300; /* onto the supports */
+  check(msr_state_step(state, 20, &err));
+  check_contacts(state);
   printf("%s%s %016" PRIx64 "\n", integrator->name, impacts == MSR_IMPACTS_KEPT ? "" : ",located",
          msr_state_hash(state));
   msr_state_free(state);

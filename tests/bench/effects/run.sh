@@ -115,8 +115,8 @@ C
 # the team of --threads
 out_threads() {
   edit '/if (s->team)$/,+2d; /msri_team_free(/d' sweep/sweep.c
-  edit 's/plan->threads > 1 ? msri_team_create(.*) : MSR_OK/MSR_OK/; /msri_team_wait(/d' sweep/sweep.c
-  edit '/msri_team_wait(/d' sweep/rows.c
+  edit 's/made->threads > 1 ? msri_team_create(.*) : MSR_OK/MSR_OK/' sweep/sweep.c
+  edit 's/msri_team_wait(.*);/;/' sweep/sweep.c sweep/rows.c sweep/bands.c
   rm base/team.c
 }
 

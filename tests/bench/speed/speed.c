@@ -2,32 +2,18 @@
  * own limit; the tables named, or all. DIRECTORY is for files that are passed to other programs. */
 #include "speed.h"
 
+#include "../machine.h"
+
 #include "msr.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-#include <unistd.h>
 
 const char *scratch, *myself;
 
-#ifdef __clang__
-static const char compiler[] = __VERSION__;
-#else
-static const char compiler[] = "gcc " __VERSION__;
-#endif
-
 static void print_machine(void) {
-  char line[128], day[32], model[128] = "unknown machine";
-  const time_t t = time(NULL);
-  strftime(day, sizeof day, "%Y-%m-%d %H:%M", localtime(&t));
-  FILE *cpus = fopen("/proc/cpuinfo", "r");
-  while (cpus && fgets(line, sizeof line, cpus))
-    if (sscanf(line, "model name : %127[^\n]", model) == 1) break;
-  if (cpus) fclose(cpus);
-  printf("%s, %s, %ld cores, %s, libmsr %s.\n", day, model, sysconf(_SC_NPROCESSORS_ONLN), compiler,
-         msr_version());
-  printf("The limit's vectors: %s. LAMMPS %s, %s.\n", limit_vectors(), lammps_version(),
+  bench_print_machine();
+  printf(".\nThe limit's vectors: %s. LAMMPS %s, %s.\n", limit_vectors(), lammps_version(),
          numba_version());
   printf("Double precision, k %g, m %g, dt %g, waves of 0.01 px, Verlet; medians of %d rounds and "
          "(quartiles).\n",

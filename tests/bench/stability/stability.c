@@ -3,12 +3,13 @@
 #include "cases.h"
 #include "watch.h"
 
+#include "../machine.h"
+
 #include "msr.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 
 /* Of the processor, a run [s]. */
 static const unsigned limit = 20;
@@ -34,23 +35,10 @@ static const struct column {
 };
 enum { COLUMNS = sizeof columns / sizeof *columns, MOST_CASES = 16 };
 
-#ifdef __clang__
-static const char compiler[] = __VERSION__;
-#else
-static const char compiler[] = "gcc " __VERSION__;
-#endif
-
 static void print_machine(void) {
-  char line[128], day[32], model[128] = "unknown machine";
-  const time_t t = time(NULL);
-  strftime(day, sizeof day, "%Y-%m-%d", localtime(&t));
-  FILE *cpus = fopen("/proc/cpuinfo", "r");
-  while (cpus && fgets(line, sizeof line, cpus))
-    if (sscanf(line, "model name : %127[^\n]", model) == 1) break;
-  if (cpus) fclose(cpus);
-  printf("%s, %s, %s, libmsr %s; one thread.\n", day, model, compiler, msr_version());
-  printf("GSL %s, Chipmunk2D %s, Box2D %s.\n", gsl_version_text(), chipmunk_version(),
-         box2d_version());
+  bench_print_machine();
+  printf("; one thread.\nGSL %s, Chipmunk2D %s, Box2D %s.\n", gsl_version_text(),
+         chipmunk_version(), box2d_version());
   for (size_t i = 0; i < COLUMNS; i++) printf("  %-11s %s\n", columns[i].name, columns[i].settings);
   printf("A run is given %u s of the processor.\n", limit);
 }

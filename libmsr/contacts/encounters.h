@@ -1,19 +1,19 @@
-/* course.h - a drift, and the pairs of it that are looked at. */
-#ifndef MSRI_COURSE_H
-#define MSRI_COURSE_H
+/* encounters.h - a drift, and the pairs of it that are looked at. */
+#ifndef MSRI_ENCOUNTERS_H
+#define MSRI_ENCOUNTERS_H
 
 #include "contacts/drift.h"
 #include "contacts/lists.h"
 
-typedef struct msri_course {
+typedef struct msri_encounters {
   msri_drift *d;
   msri_lists *lists;
   msri_pair *pair; /* [n]: those that are close, or that meet, ascending */
   size_t n;
   bool full; /* there are more */
-} msri_course;
+} msri_encounters;
 
-/* Longer ways than this, in diameters, are fast. */
+/* Longer paths than this, in diameters, are fast. */
 static const double msri_slow = 0.3;
 
 static inline double msri_distance2(const msri_drift *d, size_t i, size_t j) {
@@ -27,14 +27,14 @@ static inline bool msri_drift_meets(msri_drift *d, size_t i, size_t j) {
 }
 
 /* Does anything meet, or overlap? Bodies of which masses do become hot. Lists are good for the
- * ways. */
-bool msri_course_is_hot(const msri_course *course);
+ * paths. */
+bool msri_encounters_are_hot(const msri_encounters *course);
 
 /* Lists the pairs that are so close that pushes in this drift may reach from one to the other;
  * false: they are too many. */
-bool msri_course_list_close(msri_course *course);
+bool msri_encounters_list_close(msri_encounters *course);
 
-/* Lists the pairs that meet as they go so far, on ways of any length. Are there any? */
-bool msri_course_list_meeting(msri_course *course);
+/* Lists the pairs that meet as they go so far, on paths of any length. Are there any? */
+bool msri_encounters_list_meeting(msri_encounters *course);
 
 #endif

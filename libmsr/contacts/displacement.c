@@ -1,10 +1,10 @@
-/* motion.c - see motion.h. Least and largest values are gathered in eight lanes: their order
- * doesn't matter.
+/* displacement.c - see displacement.h. Least and largest values are gathered in eight lanes: their
+ * order doesn't matter.
  *
  * How a body went without a change of its form is found from some of its masses, by the closed form
  * of the best rotation in a plane (Umeyama 1991, Least-squares estimation of transformation
  * parameters, IEEE PAMI 13, 376); a worse one would only make the change look larger. */
-#include "contacts/motion.h"
+#include "contacts/displacement.h"
 
 #include "base/machine.h"
 
@@ -45,7 +45,7 @@ static void take(size_t n, const double *x0, const double *x, lanes *l) {
 MSRI_AVX2 static void take_avx2(size_t n, const double *x0, const double *x, lanes *l) {
   __m256d low[2], high[2];
   const size_t whole = n / LANES * LANES;
-  for (int k = 0; k < 2; k++)
+  for (size_t k = 0; k < 2; k++)
     low[k] = _mm256_loadu_pd(l->low + 4 * k), high[k] = _mm256_loadu_pd(l->high + 4 * k);
   for (size_t i = 0; i < whole; i += LANES)
     for (size_t k = 0; k < 2; k++) {
@@ -53,7 +53,7 @@ MSRI_AVX2 static void take_avx2(size_t n, const double *x0, const double *x, lan
       const __m256d d = _mm256_sub_pd(to, from);
       low[k] = _mm256_min_pd(d, low[k]), high[k] = _mm256_max_pd(d, high[k]);
     }
-  for (int k = 0; k < 2; k++)
+  for (size_t k = 0; k < 2; k++)
     _mm256_storeu_pd(l->low + 4 * k, low[k]), _mm256_storeu_pd(l->high + 4 * k, high[k]);
   take(n - whole, x0 + whole, x + whole, l);
 }
@@ -100,23 +100,23 @@ static void do_all(const task *t, msri_box *box) {
   }
 }
 
-void msri_motion_measure(const msri_bodies *bodies, const double *q0, const double *q,
-                         msri_box *box) {
+void msri_displacement_measure(const msri_bodies *bodies, const double *q0, const double *q,
+                               msri_box *box) {
   do_all(&(task){bodies, widest(), q0, q}, box);
 }
 
-msri_motion msri_motion_of(const msri_box *ways) {
-  msri_motion m;
+msri_displacement msri_displacement_of(const msri_box *paths) {
+  msri_displacement m;
   double half[2];
   for (int d = 0; d < 2; d++) {
-    m.way[d] = ways->low[d] / 2 + ways->high[d] / 2;
-    half[d] = ways->high[d] / 2 - ways->low[d] / 2;
+    m.path[d] = paths->low[d] / 2 + paths->high[d] / 2;
+    half[d] = paths->high[d] / 2 - paths->low[d] / 2;
   }
   // with more than rounding can have taken
   m.spread = sqrt(half[0] * half[0] + half[1] * half[1]) * (1 + 1e-12) +
-             1e-15 * (fabs(m.way[0]) + fabs(m.way[1]));
+             1e-15 * (fabs(m.path[0]) + fabs(m.path[1]));
   if (m.spread < (double)INFINITY) return m;
-  return (msri_motion){{0, 0}, (double)INFINITY};
+  return (msri_displacement){{0, 0}, (double)INFINITY};
 }
 
 /* ---- Change of form */
@@ -183,7 +183,8 @@ static double farthest(const turn *t, size_t n, msri_stretch r, const double *at
   return most;
 }
 
-double msri_motion_change(const msri_bodies *b, size_t body, const double *at, const double *q) {
+double msri_displacement_change(const msri_bodies *b, size_t body, const double *at,
+                                const double *q) {
   size_t some[SOME + 1];
   const size_t chosen = choose_some(b, body, some);
   const turn t = best_turn(b->n_masses, at, q, some, chosen);
