@@ -71,14 +71,13 @@ static unsigned parts_of(const msr_plan *plan, const msri_object *object, int de
 }
 
 /* Objects that follow each other and are the same thread's. */
-static size_t share_of(const msr_plan *plan) {
-  const size_t n = plan->objects.n, threads = plan->threads;
-  const size_t share = threads > 1 ? n / (4 * threads) : n;
+static size_t share_of(const msr_plan *plan, size_t threads) {
+  const size_t n = plan->objects.n, share = threads > 1 ? n / (4 * threads) : n;
   return share < 1 ? 1 : msri_lesser(share, MOST_SHARED);
 }
 
-static unsigned owner_of(const msr_plan *plan, size_t object) {
-  return (unsigned)(object / share_of(plan) % plan->threads);
+static unsigned owner_of(const msri_sweep *s, size_t object) {
+  return (unsigned)(object / share_of(s->pass.plan, s->threads) % s->threads);
 }
 
 static int depth_for(const msr_plan *plan, const msri_object *object, int ways) {
@@ -136,7 +135,8 @@ static room room_for(const msr_plan *plan) {
       widen(parts_of(plan, object, r.depth) > 1 ? &r.parts : &r.rows,
             msri_rows_size(ways, msri_plan_meets(plan), object->width, r.depth));
   }
-  if (share_of(plan) > 1) widen(&r.patch, msri_patch_most(ways, msri_plan_meets(plan)));
+  if (share_of(plan, plan->threads) > 1)
+    widen(&r.patch, msri_patch_most(ways, msri_plan_meets(plan)));
   r.shares = plan->timed ? msri_shares_size(plan, ways) : 0;
   r.patch = msri_round_up(r.patch, LINE / sizeof(double));
   r.rows = msri_round_up(r.rows, LINE / sizeof(double));
@@ -209,7 +209,7 @@ msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error
   if (!made) return MSR_ENOMEM;
   made->threads = threads_for(plan, &r);
   made->depth = r.depth;
-  made->alone = plan->objects.n <= plan->threads;
+  made->alone = plan->objects.n <= made->threads;
   made->pass = (msri_pass){.plan = plan,
                            .kernel = msri_lattice_widest(),
                            .stage = made->stage,
@@ -286,7 +286,7 @@ static double look_at(msri_sweep *s, size_t n, unsigned thread) {
   bool *same = &s->rest.same[n];
   msri_part all = {.parts = 1, .begin = begin, .memory = &me->rows, .same = same};
   double fastest;
-  if (thread != (small ? owner_of(s->pass.plan, n) : 0)) return 0;
+  if (thread != (small ? owner_of(s, n) : 0)) return 0;
   if (parts_of(s->pass.plan, object, s->depth) > 1) all.memory = s->parts;
   if (small)
     fastest = msri_patch_run(&s->pass, &alone, false, false, me->patch, &me->tally, same);
@@ -313,8 +313,8 @@ static double run_mesh(msri_sweep *s, unsigned thread, unsigned *turn) {
 /* Small objects from the n-th on that are a thread's and are stepped as usual. */
 static size_t count_alike(const msri_sweep *s, size_t n, unsigned thread) {
   const msr_plan *plan = s->pass.plan;
-  const size_t first = n, last = msri_lesser(plan->objects.n, n + share_of(plan));
-  while (n < last && s->rest.how[n] == MSRI_STEPPED && owner_of(plan, n) == thread &&
+  const size_t first = n, last = msri_lesser(plan->objects.n, n + share_of(plan, s->threads));
+  while (n < last && s->rest.how[n] == MSRI_STEPPED && owner_of(s, n) == thread &&
          is_small(plan, &plan->objects.object[n]))
     n++;
   return n - first;
@@ -339,7 +339,7 @@ static void work(void *self, unsigned thread) {
     } else if (s->rest.how[n] == MSRI_LOOKED_AT)
       fastest = look_at(s, n, thread);
     else if (s->rest.how[n] == MSRI_STEPPED && !is_small(s->pass.plan, object))
-      fastest = run_large(s, object, thread, owner_of(s->pass.plan, n), &turn);
+      fastest = run_large(s, object, thread, owner_of(s, n), &turn);
     me->fastest = msri_worse(fastest, me->fastest);
   }
   if (has_bands(s->pass.plan)) me->fastest = run_mesh(s, thread, &turn);
