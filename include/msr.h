@@ -671,7 +671,9 @@ typedef enum msr_found {
   MSR_FOUND_NONE,        /* no step is */
   MSR_FOUND_CLOSED_FORM, /* a whole rectangle of 4 neighbours: sum of (4 k/m) sin^2((n-1) pi/2n) */
   MSR_FOUND_LANCZOS,     /* largest eigenvalue of the actual mesh, 0.1 % accurate (Lanczos 1950) */
-  MSR_FOUND_BOUND        /* at least so large: by bounds that forces give (Gershgorin) */
+  MSR_FOUND_BOUND        /* at least so large: by bounds that forces give (Gershgorin) or, of more
+                          * than 131072 masses of a picture, those of a lattice without end: omega^2
+                          * = 4 k/m (at rest) and 8 k/m (stretched), with 8 neighbours 8 and 12 */
 } msr_found;
 
 /* A largest stable step. */
@@ -695,8 +697,9 @@ typedef struct msr_stability {
 } msr_stability;
 
 /* Analyses the plan: some 100 products of the matrix of springs with a vector; memory, given back:
- * 13 doubles a mass. MSR_ENOMEM, or what force->rates, force->add or the integrator's step returns.
- */
+ * 13 doubles a mass. Of more than 131072 masses it makes neither, and tells bounds of all but whole
+ * rectangles without damping. MSR_ENOMEM, or what force->rates, force->add or the integrator's step
+ * returns. */
 MSR_API msr_status msr_plan_stability(const msr_plan *plan, msr_stability *stability,
                                       msr_error *err);
 

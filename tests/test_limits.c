@@ -1,6 +1,7 @@
 /* test_limits.c - the largest stable steps that the analysis tells are those at which real runs
  * begin to explode: 2 % below they stay bounded, 2 % above they don't; and no bound is above them.
- */
+ * link: --wrap=malloc --wrap=calloc --wrap=realloc */
+#include "alloc.h"
 #include "scenes.h"
 
 /* ---- Meshes without contacts */
@@ -264,6 +265,59 @@ static void dense_spectra_are_as_true_as_said(void **unused) {
   }
 }
 
+/* A picture that lacks a corner, with damping if `c` isn't 0. */
+static msr_stability of_picture(size_t side, int neighbours, double c) {
+  msr_picture *picture;
+  must(msr_picture_create(side, side, &picture, &why));
+  for (size_t p = 1; p < side * side; p++) memcpy(picture->rgb + 3 * p, rgb_of('o'), 3);
+  msr_scene *scene =
+      scene_from(picture, &weightless, &(msr_scene_options){.neighbours = neighbours});
+  if (c > 0) add_force(scene, &msr_force_damping, &(msr_damping){c});
+  world w = open_world(scene, NULL, 1);
+  msr_stability s;
+  alloc_largest = 0;
+  must(msr_plan_stability(w.plan, &s, &why));
+  close_world(w);
+  return s;
+}
+
+/* Above 131072 masses nothing is made that has a double for each, and what is told is a bound: no
+ * higher than what Lanczos finds of a picture of that kind, which is 0.1 % off, and near it. */
+static void vast_pictures_have_bounds(void **unused) {
+  (void)unused;
+  for (int neighbours = 4; neighbours <= 8; neighbours += 4)
+    for (double c = 0; c < 2; c++) {
+      const msr_stability s = of_picture(363, neighbours, c);
+      assert_true(alloc_largest < sizeof(double) * 363 * 363);
+      const msr_stability small = of_picture(120, neighbours, c);
+      const msr_limit *const limits[] = {&s.at_rest, &s.stretched, &s.damped};
+      const msr_limit *const found[] = {&small.at_rest, &small.stretched, &small.damped};
+      for (size_t i = 0; i < LENGTH(limits); i++) {
+        assert_int_equal(limits[i]->found, MSR_FOUND_BOUND);
+        assert_int_equal(limits[i]->iterations, 0);
+        assert_true(limits[i]->step < found[i]->step * (1 + 1e-9));
+        assert_true(limits[i]->step > found[i]->step * (1 - 2e-3));
+      }
+      assert_true(s.bound <= s.stretched.step);
+    }
+}
+
+/* Pairs: Gershgorin's bound, omega^2 = 2 k / m, is exact. */
+static void vast_meshes_have_bounds(void **unused) {
+  (void)unused;
+  enum { PAIRS = 1 << 16 };
+  for (size_t more = 0; more < 2; more++) {
+    msr_scene *scene = empty_scene(1);
+    for (size_t i = 0; i < 2 * (PAIRS + more); i++) add_mass(scene, (double)i, 0, 0, 0, 0.1);
+    for (size_t i = 0; i < PAIRS + more; i++)
+      must(msr_scene_add_spring(scene, 2 * i, 2 * i + 1, 1500, 1, &why));
+    const msr_stability s = of_scene(scene, &msr_integrator_verlet);
+    assert_int_equal(s.at_rest.found, more ? MSR_FOUND_BOUND : MSR_FOUND_LANCZOS);
+    assert_true(fabs(s.at_rest.step / (2 / sqrt(2 * 1500 / 0.1)) - 1) < 1e-3);
+    assert_true(fabs(s.stretched.step / (2 / sqrt(2 * 1500 / 0.1)) - 1) < 1e-3);
+  }
+}
+
 /* omega^2 = 2 k / m for stiffness and mass at the ends of the range of numbers. */
 static void numbers_of_any_size(void **unused) {
   (void)unused;
@@ -338,6 +392,8 @@ int main(void) {
       cmocka_unit_test(with_damping),
       cmocka_unit_test(any_step_where_nothing_swings),
       cmocka_unit_test(dense_spectra_are_as_true_as_said),
+      cmocka_unit_test(vast_pictures_have_bounds),
+      cmocka_unit_test(vast_meshes_have_bounds),
       cmocka_unit_test(numbers_of_any_size),
       cmocka_unit_test(forces_of_ones_own_count),
   };
