@@ -58,7 +58,7 @@ static void steps_say_why(void **unused) {
        {0},
        "guard",
        true,
-       "always: stops what is unstable; speeds at each step, energies every 256 steps"},
+       "always: stops what is unstable; speeds every 64 steps, energies every 256 steps"},
       {nothing_below,
        {.integrator = &msr_integrator_rk4},
        "guard",

@@ -5,6 +5,7 @@
 
 #include "base/number.h"
 #include "base/pixel.h"
+#include "integrators/splitting.h"
 #include "sweep/sweep.h"
 
 #include <stdlib.h>
@@ -151,11 +152,19 @@ static void add_leaps(msr_plan *plan, const msri_asked *asked) {
               f->leaps ? ", implicit, wherever cheaper" : "");
 }
 
-/* Row by row the loop itself tells how fast masses are. */
+/* Steps between two looks at speeds: row by row it's drifts that are counted, and past supports the
+ * loop tells of each. */
+static int steps_between_looks(const msr_plan *plan) {
+  const int drifts = msri_splitting_drifts(plan->figures.integrator);
+  if (!msri_plan_sweeps(plan)) return MSRI_GLANCE;
+  return msri_plan_meets(plan) ? 1 : (MSRI_SPEEDS + drifts - 1) / drifts;
+}
+
 static void add_guard(msr_plan *plan) {
   const bool on = plan->figures.masses > 0;
+  const int steps = steps_between_looks(plan);
   char speeds[32] = "at each step", *reason = add_effect(plan, MSR_ROLE_STEP, "guard", on, NULL);
-  if (!msri_plan_sweeps(plan)) msri_format(speeds, sizeof speeds, "every %d steps", MSRI_GLANCE);
+  if (steps > 1) msri_format(speeds, sizeof speeds, "every %d steps", steps);
   msri_format(reason, MSR_MESSAGE_SIZE,
               on ? "always: stops what is unstable; speeds %s, energies every %d steps"
                  : "there is no mass",

@@ -172,8 +172,9 @@ static inline double msri_force_calls(const msr_force *force, const msr_integrat
   return integrator->damped_order == 0 ? 2 * evaluations : 2;
 }
 
-/* Steps between two looks of the guard: at speeds, at all energies. */
-enum { MSRI_GLANCE = 16, MSRI_LOOK = 256 };
+/* Steps between two looks of the guard: at speeds, at all energies; drifts between two looks at
+ * speeds where steps go row by row. */
+enum { MSRI_GLANCE = 16, MSRI_LOOK = 256, MSRI_SPEEDS = 64 };
 
 /* Iterations between two looks with care: 64; where they are one or two steps, 256 steps. */
 static inline uint64_t msri_care_period(const msr_plan_figures *f) {

@@ -18,7 +18,6 @@ enum {
   PATCH_CELLS = 12288,  /* of a small object: they fit into a core's cache */
   SHARED_MASSES = 8192, /* of an object that is worth sharing among threads */
   LEAST_STAGES = 4,     /* of a pass: fewer would have threads wait for each other too often */
-  LOOK = 64,            /* stages between two looks at speeds */
   MOST_SHARED = 32,     /* small objects that are one thread's together */
   LINE = 64             /* of the cache, and the widest vector */
 };
@@ -365,7 +364,7 @@ static double run_pass(msri_sweep *s, uint64_t *met) {
  * are alike. */
 static void set_stages(msri_sweep *s, const msri_course *course, uint64_t k, uint64_t end,
                        msri_progress *p) {
-  const uint64_t look = k + LOOK - k % LOOK, left = (look < end ? look : end) - k;
+  const uint64_t look = k + MSRI_SPEEDS - k % MSRI_SPEEDS, left = (look < end ? look : end) - k;
   const uint64_t passes = (left + (uint64_t)s->depth - 1) / (uint64_t)s->depth;
   const int most = (int)((left + passes - 1) / passes);
   int n = 0;
@@ -398,7 +397,7 @@ static void run_course(msri_sweep *s, msri_course *course, double fastest, msri_
     if (s->shares.memory) msri_shares_measure(&s->shares, &s->pass);
     speed = msri_worse(run_pass(s, &p->met), speed);
     s->filled = s->kept;
-    if ((k % LOOK > 0 && k < end) || speed <= fastest || p->fast) continue;
+    if ((k % MSRI_SPEEDS > 0 && k < end) || speed <= fastest || p->fast) continue;
     p->fast = true;
     if (k == end) continue;
     end_early(course, k);
