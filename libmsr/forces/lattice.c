@@ -15,8 +15,9 @@ typedef struct place {
 typedef struct msri_task {
   int ways; /* of springs, from MSRI_RIGHT on */
   int besides;
-  bool tells;      /* the largest velocity along an axis */
-  double *ax, *ay; /* [n]: accelerations go here, and cells do not drift; NULL: they do */
+  bool tells;  /* the largest velocity along an axis */
+  bool traces; /* to: */
+  msri_trace trace;
 } msri_task;
 
 #if MSRI_WIDE
@@ -48,12 +49,13 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
                                                                     const msri_motion *motion) {   \
     return go_##width(s, motion, &(msri_task){.ways = number, .besides = with, .tells = told});    \
   }
-#define KICK(target, width, number, with)                                                          \
-  target static double kick_##width##_##number##_##with(                                           \
-      const msri_cells *s, const msri_motion *motion, double *ax, double *ay) {                    \
+#define TRACE(target, width, number, with)                                                         \
+  target static double trace_##width##_##number##_##with(                                          \
+      const msri_cells *s, const msri_motion *motion, const msri_trace *to) {                      \
     return go_##width(                                                                             \
         s, motion,                                                                                 \
-        &(msri_task){.ways = number, .besides = with, .tells = true, .ax = ax, .ay = ay});         \
+        &(msri_task){                                                                              \
+            .ways = number, .besides = with, .tells = true, .traces = true, .trace = *to});        \
   }
 #define KERNELS(target, width, number)                                                             \
   ADVANCE(target, width, number, 0, 0)                                                             \
@@ -64,10 +66,10 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
   ADVANCE(target, width, number, 1, 1)                                                             \
   ADVANCE(target, width, number, 1, 2)                                                             \
   ADVANCE(target, width, number, 1, 3)                                                             \
-  KICK(target, width, number, 0)                                                                   \
-  KICK(target, width, number, 1)                                                                   \
-  KICK(target, width, number, 2)                                                                   \
-  KICK(target, width, number, 3)                                                                   \
+  TRACE(target, width, number, 0)                                                                  \
+  TRACE(target, width, number, 1)                                                                  \
+  TRACE(target, width, number, 2)                                                                  \
+  TRACE(target, width, number, 3)                                                                  \
   target static void pull_##width##_##number(const msri_cells *s, const msri_motion *motion) {     \
     look_below_##width(s, motion, number);                                                         \
   }
@@ -79,8 +81,8 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
 #define ROW(width, number)                                                                         \
   {                                                                                                \
     {ADVANCES(width, number, 0), ADVANCES(width, number, 1)},                                      \
-        {kick_##width##_##number##_0, kick_##width##_##number##_1, kick_##width##_##number##_2,    \
-         kick_##width##_##number##_3},                                                             \
+        {trace_##width##_##number##_0, trace_##width##_##number##_1, trace_##width##_##number##_2, \
+         trace_##width##_##number##_3},                                                            \
         pull_##width##_##number,                                                                   \
   }
 

@@ -39,6 +39,11 @@ typedef struct msri_cells {
   ptrdiff_t back[MSRI_WAYS];
 } msri_cells;
 
+/* Of n cells, those of the blocks: their accelerations, and where they were before they drifted. */
+typedef struct msri_trace {
+  double *ax, *ay, *x, *y; /* [n] */
+} msri_trace;
+
 /* What may act beside the springs: a weight, air between the kicks. */
 enum { MSRI_WITH_WEIGHT = 1, MSRI_WITH_AIR = 2, MSRI_BESIDES = 4 };
 
@@ -59,10 +64,9 @@ typedef struct msri_lattice_kernel {
     /* Forces, then kick, kick, drift; by what acts beside the springs. Returns the largest
      * velocity along an axis, NaN if one is, if it's asked for; else 0. */
     double (*advance[2][MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
-    /* The same without the drift, and asked; accelerations go to ax, ay [n], those of the blocks.
-     */
-    double (*kick[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion, double *ax,
-                                 double *ay);
+    /* The same, and asked; what a drift past something in the way is to know goes to trace. */
+    double (*trace[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion,
+                                  const msri_trace *trace);
     /* Only the forces of the springs to the cells below. */
     void (*pull)(const msri_cells *cells, const msri_motion *motion);
   } of[2]; /* 4 neighbours, 8 neighbours */

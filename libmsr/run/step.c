@@ -158,8 +158,8 @@ static msri_progress sweep_timed(msr_state *state, const msri_swept *swept, msri
 static msr_status sweep(msr_state *state, uint64_t end, const msri_poll *poll, bool *fast) {
   const size_t n = state->plan->figures.masses;
   const double most = sqrt(2 * state->guard.most / state->plan->uniform_mass);
-  const msri_swept swept = {state->q,       state->q + n,       state->v,    state->v + n,
-                            state->scratch, state->meter.calls, state->armed};
+  const msri_swept swept = {state->q,       state->q + n,       state->v,   state->v + n,
+                            state->scratch, state->meter.calls, state->rows};
   const msri_course way = {state->plan, state->iteration, state->substep,
                            steps_to(state, end, poll)};
   msr_status status = msri_poll_call(poll, state);

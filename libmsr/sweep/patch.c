@@ -27,9 +27,9 @@ static size_t pulls_size(int ways, const msri_object *object) {
   return 2 * (size_t)(ways - MSRI_BELOW) * stride(object);
 }
 
-/* Accelerations, what is owed, and the velocities before that. */
+/* Traces, what is owed, and the velocities before that. */
 static size_t meet_size(const msri_object *object) {
-  return 2 * msri_patch_cells(object) + MSRI_MEET_DEBT * object->masses;
+  return MSRI_MEET_TRACE * msri_patch_cells(object) + MSRI_MEET_DEBT * object->masses;
 }
 
 /* Marks are needed before anything else is. */
@@ -86,10 +86,10 @@ static double step_past(const msri_pass *pass, const msri_stage *stage, const ms
   msri_tally *tally = meet->tally;
   const bool timed = msri_tally_is_turn(tally);
   double start = timed ? msri_clock_now() : 0;
-  const double fastest = msri_meet_kick(pass, stage, cells, meet);
+  const double fastest = msri_meet_advance(pass, stage, cells, meet);
   if (timed) start = msri_tally_add(tally, start, &tally->kicks);
   for (size_t r = 0; r < object->rows && stage->motion.drift != 0; r++)
-    msri_meet_drift(pass, stage, object->row + r, fastest, cells, r * length(object), meet);
+    msri_meet_stop(pass, stage, object->row + r, fastest, cells, r * length(object), meet);
   if (timed) msri_tally_add(tally, start, &tally->drifts);
   return fastest;
 }
