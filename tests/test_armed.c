@@ -158,6 +158,38 @@ static void ranges_drift_as_masses_do(void **unused) {
 }
 
 /* From just before the first edge it's 1 to the second, but for rounding. */
+/* Blocks of any length, by vectors of each width, and mass by mass. */
+static void widths_do_the_same(void **unused) {
+  (void)unused;
+  uint64_t dice = 9;
+  msr_picture *p = random_picture(&dice, 20, 20, 10);
+  for (const msri_flock_kernel *kernel = msri_flock_kernels;; kernel++) {
+    const bool runs = !kernel->runs_here || kernel->runs_here();
+    for (size_t n = 0; runs && n <= MSRI_FLOCK_BLOCK; n++) {
+      static swarm now, was, due;
+      uint64_t left = 0;
+      fill(&now, &dice, p, n % 2);
+      memcpy(&was, &now, sizeof was);
+      memcpy(&due, &now, sizeof due);
+      for (size_t i = 0; i < n; i++) {
+        for (int axis = 0; axis < 2; axis++) due.z[axis][i] += 0.01 * due.z[2 + axis][i];
+        const bool stays =
+            floor(due.z[0][i]) == floor(was.z[0][i]) && floor(due.z[1][i]) == floor(was.z[1][i]);
+        left |= (uint64_t)!stays << i;
+      }
+      const msri_flock f = flock_of(&now, 0, n, false);
+      kernel->glide(&f, 0.01);
+      for (size_t i = 0; i < MOST; i++) // NaN is NaN, whatever its bits are
+        for (int z = 0; z < 4; z++)
+          assert_true(memcmp(&now.z[z][i], &due.z[z][i], sizeof(double)) == 0 ||
+                      (isnan(now.z[z][i]) && isnan(due.z[z][i])));
+      assert_true(kernel->leave(&f, &(msri_places){was.z[0], was.z[1]}) == left);
+    }
+    if (!kernel->runs_here) break;
+  }
+  msr_picture_free(p);
+}
+
 static void rounding_leads_into_no_support(void **unused) {
   (void)unused;
   msr_picture *p = paint("..#\n");
@@ -433,8 +465,12 @@ static void go(const pair *p, uint64_t iterations) {
   assert_same(p);
 }
 
+/* A state that is swept counts by rows. */
 static bool any_is_disarmed(const world *w) {
-  for (size_t b = 0; b < msri_flock_blocks(msr_plan_describe(w->plan).masses); b++)
+  const msri_armed_row *row = w->state->rows.row;
+  for (size_t r = 0; w->state->sweep && r < w->plan->objects.n_rows; r++)
+    if (row[r].until > row[r].gone) return true;
+  for (size_t b = 0; !w->state->sweep && b < msri_flock_blocks(w->plan->figures.masses); b++)
     if (w->state->armed[b].left > 0) return true;
   return false;
 }
@@ -507,6 +543,26 @@ static void nothing_is_missed(void **unused) {
       check_runs(&msr_integrator_symplectic_euler, 3, rules[rule], seed);
       check_runs(NULL, 0, rules[rule], seed);
     }
+}
+
+/* Nothing is left of what was counted from the old beginning. */
+static void rows_begin_anew(void **unused) {
+  (void)unused;
+  const msr_conf conf = {0.005, 9.8, 0.1, 300, 1, 1};
+  msr_scene *scene = scene_of(walls, &conf, NULL);
+  const msr_plan_options options = {.integrator = &msr_integrator_verlet, .substeps = 3};
+  const pair p = open_pair(scene, &options);
+  const msri_objects *o = &p.w[0].plan->objects;
+  const msri_armed_rows *armed = &p.w[0].state->rows;
+  assert_non_null(p.w[0].state->sweep);
+  go(&p, 1);
+  for (size_t r = 0; r < o->n_rows; r++) armed->row[r].gone = armed->row[r].until = 0x1p22;
+  for (size_t b = 0; b < o->n_blocks; b++) armed->block[b].until = 0x1p22;
+  go(&p, 1000);
+  for (size_t r = 0; r < o->n_rows; r++) assert_true(armed->row[r].gone < 1e6);
+  assert_true(msr_state_contacts(p.w[0].state) > 10);
+  close_pair(&p);
+  msr_scene_free(scene);
 }
 
 /* ---- Masses that are moved otherwise */
@@ -637,6 +693,7 @@ static void a_step_without_memory_says_so(void **unused) {
 int main(void) {
   const struct CMUnitTest all[] = {
       cmocka_unit_test(ranges_drift_as_masses_do),
+      cmocka_unit_test(widths_do_the_same),
       cmocka_unit_test(rounding_leads_into_no_support),
       cmocka_unit_test(debts_are_paid_once),
       cmocka_unit_test(debts_that_are_lost_are_told),
@@ -646,6 +703,7 @@ int main(void) {
       cmocka_unit_test(ranges_are_armed_in_time),
       cmocka_unit_test(steps_within_rounding_are_counted),
       cmocka_unit_test(nothing_is_missed),
+      cmocka_unit_test(rows_begin_anew),
       cmocka_unit_test(jumps_are_noticed),
       cmocka_unit_test(leaps_are_noticed),
       cmocka_unit_test(other_vectors_are_tested),

@@ -198,24 +198,24 @@ static void check_advance(const msri_lattice_kernel *kernel, const row *from, co
   assert_rows(kernel, "advance", ways, besides, &is, &due);
 }
 
-/* The same without the drift; the accelerations of masses are told. */
-static void check_kick(const msri_lattice_kernel *kernel, const row *from, const msri_motion *m,
-                       int ways, int besides) {
-  row due = *from, is = *from;
-  msri_motion still = *m;
-  still.drift = 0;
-  double a[2][SIZE] = {{0}}, wanted[2][SIZE] = {{0}};
-  const msri_cells at = cells_of(&is);
-  row same = *from;
+/* The same; accelerations of masses, and places before, are told. */
+static void check_trace(const msri_lattice_kernel *kernel, const row *from, const msri_motion *m,
+                        int ways, int besides) {
+  row due = *from, is = *from, same = *from;
+  double told_of[4][SIZE] = {{0}}, wanted[4][SIZE] = {{0}};
+  const msri_cells at = cells_of(&is), before = cells_of(&same);
+  const msri_trace trace = {told_of[0] + AROUND, told_of[1] + AROUND, told_of[2] + AROUND,
+                            told_of[3] + AROUND};
+  memcpy(wanted[2] + AROUND, before.x, before.n * sizeof(double));
+  memcpy(wanted[3] + AROUND, before.y, before.n * sizeof(double));
   accelerate(&same, m, ways, besides, wanted[0], wanted[1]);
-  const double fastest = advance_cells(&due, &still, ways, besides);
-  const double told =
-      kernel->of[ways == MSRI_WAYS].kick[besides](&at, m, a[0] + AROUND, a[1] + AROUND);
-  assert_rows(kernel, "kick", ways, besides, &is, &due);
-  for (int axis = 0; axis < 2; axis++)
+  const double fastest = advance_cells(&due, m, ways, besides);
+  const double told = kernel->of[ways == MSRI_WAYS].trace[besides](&at, m, &trace);
+  assert_rows(kernel, "trace", ways, besides, &is, &due);
+  for (int what = 0; what < 4; what++)
     for (size_t c = 0; c < SIZE; c++)
-      if (from->mass[c] || !is_listed(from, c))
-        assert_memory_equal(&a[axis][c], &wanted[axis][c], sizeof a[0][0]);
+      if (from->mass[c] || (what < 2 && !is_listed(from, c)))
+        assert_memory_equal(&told_of[what][c], &wanted[what][c], sizeof told_of[0][0]);
   assert_memory_equal(&told, &fastest, sizeof told);
 }
 
@@ -234,7 +234,7 @@ static void check_all(const row *from, const msri_motion *m) {
   for (size_t k = 0; (kernel = kernel_here(k)); k++)
     for (int ways = MSRI_BELOW + 1; ways <= MSRI_WAYS; ways += MSRI_WAYS - MSRI_BELOW - 1) {
       for (int besides = 0; besides < MSRI_BESIDES; besides++)
-        check_advance(kernel, from, m, ways, besides), check_kick(kernel, from, m, ways, besides);
+        check_advance(kernel, from, m, ways, besides), check_trace(kernel, from, m, ways, besides);
       check_pull(kernel, from, m, ways);
     }
 }
@@ -338,13 +338,14 @@ static void the_fastest_is_found(void **state) {
     double *const v = &(at % 2 ? r.vx : r.vy)[AROUND + at];
     *v = at % 3 ? -1e6 : 1e6;
     for (size_t k = 0; (kernel = kernel_here(k)); k++)
-      check_kick(kernel, &r, &m, MSRI_WAYS, 0), check_kick(kernel, &r, &m, 2, 3);
+      check_trace(kernel, &r, &m, MSRI_WAYS, 0), check_trace(kernel, &r, &m, 2, 3);
     *v = NO_NUMBER;
     for (size_t k = 0; (kernel = kernel_here(k)); k++) {
       row is = r;
-      double ax[SIZE], ay[SIZE];
+      double trace[4][SIZE];
+      const msri_trace to = {trace[0], trace[1], trace[2], trace[3]};
       const msri_cells cells = cells_of(&is);
-      assert_true(isnan(kernel->of[0].kick[1](&cells, &m, ax, ay)));
+      assert_true(isnan(kernel->of[0].trace[1](&cells, &m, &to)));
     }
   }
 }

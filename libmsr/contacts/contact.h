@@ -23,6 +23,11 @@ typedef struct msri_flock {
   const double *ax, *ay; /* NULL: paths are straight */
 } msri_flock;
 
+/* Where masses are, or were. */
+typedef struct msri_places {
+  const double *x, *y; /* [n] */
+} msri_places;
+
 /* Where nothing else is said, q = x[n], y[n], likewise the others. */
 typedef struct msri_contact {
   void *self;
@@ -33,6 +38,10 @@ typedef struct msri_contact {
    * is more accurate. By ascending masses; calls for ranges that don't overlap may be made at once.
    */
   uint64_t (*drift)(const void *self, double h, const msri_flock *flock, msri_debts *debts);
+  /* Up to MSRI_FLOCK_BLOCK masses have drifted so, as if nothing were in the way: puts those right
+   * that something is in the way of. */
+  uint64_t (*stop_drift)(const void *self, double h, const msri_flock *block,
+                         const msri_places *from, msri_debts *debts);
   /* How far each of n masses can go, along either axis, and meet nothing, at least [px]; 0 as soon
    * as that is nothing for one of them. NULL: unknown. */
   double (*clearance)(const void *self, size_t n, const double *x, const double *y);

@@ -1,36 +1,57 @@
-/* flock.c - masses that stay in their pixel, for vectors of several widths. */
+/* flock.c - masses that stay in their pixel, for vectors of several widths: what is left by wide
+ * ones is done by narrower ones. */
 #include "contacts/flock.h"
 
-#include "base/machine.h"
+#define LANES    1
+#define NAMED(x) x##_1
+#include "contacts/flock_kernel.inc"
 
-#include <math.h>
+#if MSRI_WIDE
+#define LANES    4
+#define NAMED(x) x##_4
+#include "contacts/flock_kernel.inc"
 
-/* Is it one pixel? What is no number is nowhere. */
-MSRI_INLINE int is_same(double x, double to) { return floor(x) == floor(to); }
+#define LANES    8
+#define NAMED(x) x##_8
+#include "contacts/flock_kernel.inc"
+#endif
 
-MSRI_INLINE void move(size_t n, double h, const double *ux, const double *uy, double *restrict x,
-                      double *restrict y, int64_t *restrict leaves) {
-  for (size_t k = 0; k < n; k++) {
-    const double to_x = x[k] + h * ux[k], to_y = y[k] + h * uy[k];
-    const int stays = is_same(x[k], to_x) & is_same(y[k], to_y);
-    x[k] = stays ? to_x : x[k];
-    y[k] = stays ? to_y : y[k];
-    leaves[k] = !stays;
-  }
+static void glide_any(const msri_flock *f, double h) { glide_1(f, h, 0); }
+
+static uint64_t leave_any(const msri_flock *f, const msri_places *from) {
+  uint64_t left = 0;
+  leave_1(f, from, 0, &left);
+  return left;
 }
 
 #if MSRI_WIDE
-MSRI_AVX2 static void move_avx2(const msri_flock *b, double h, int64_t *leaves) {
-  move(b->n, h, b->ux, b->uy, b->x, b->y, leaves);
+MSRI_AVX2 static void glide_avx2(const msri_flock *f, double h) { glide_1(f, h, glide_4(f, h, 0)); }
+
+MSRI_AVX2 static uint64_t leave_avx2(const msri_flock *f, const msri_places *from) {
+  uint64_t left = 0;
+  leave_1(f, from, leave_4(f, from, 0, &left), &left);
+  return left;
+}
+
+MSRI_AVX512 static void glide_avx512(const msri_flock *f, double h) { glide_8(f, h, 0); }
+
+MSRI_AVX512 static uint64_t leave_avx512(const msri_flock *f, const msri_places *from) {
+  uint64_t left = 0;
+  leave_8(f, from, 0, &left);
+  return left;
 }
 #endif
 
-void msri_flock_move(const msri_flock *block, double h, int64_t *leaves) {
+const msri_flock_kernel msri_flock_kernels[] = {
 #if MSRI_WIDE
-  if (msri_has_avx2()) {
-    move_avx2(block, h, leaves);
-    return;
-  }
+    {msri_has_avx512, glide_avx512, leave_avx512},
+    {msri_has_avx2, glide_avx2, leave_avx2},
 #endif
-  move(block->n, h, block->ux, block->uy, block->x, block->y, leaves);
+    {NULL, glide_any, leave_any},
+};
+
+const msri_flock_kernel *msri_flock_widest(void) {
+  const msri_flock_kernel *kernel = msri_flock_kernels;
+  while (kernel->runs_here && !kernel->runs_here()) kernel++;
+  return kernel;
 }

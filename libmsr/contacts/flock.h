@@ -41,9 +41,20 @@ static inline msri_flock msri_flock_part(const msri_flock *f, size_t from) {
                       .ay = f->ay ? f->ay + from : NULL};
 }
 
-/* x += h u for those of a block that stay in their pixel; the others, whose leaves [n] is 1 (an
- * integer as wide as a double: the loop is vectorised), stay where they are, and so does all that
- * isn't finite. */
-void msri_flock_move(const msri_flock *block, double h, int64_t *leaves);
+/* What is done to masses by vectors of some width: same bits by each of them. */
+typedef struct msri_flock_kernel {
+  bool (*runs_here)(void); /* has this machine got such vectors? NULL: every one has */
+  /* x += h u. */
+  void (*glide)(const msri_flock *flock, double h);
+  /* Which of a block have left the pixel where they were, the first one's bit being the lowest?
+   * What is no number has. */
+  uint64_t (*leave)(const msri_flock *block, const msri_places *from);
+} msri_flock_kernel;
+
+/* Widest first; the last runs anywhere. */
+extern const msri_flock_kernel msri_flock_kernels[];
+
+/* The widest that runs here. */
+const msri_flock_kernel *msri_flock_widest(void);
 
 #endif

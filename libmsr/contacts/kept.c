@@ -136,6 +136,11 @@ static uint64_t drift(const void *self, double h, const msri_flock *flock, msri_
   return msri_supports_drift(self, h, flock, debts, walk);
 }
 
+static uint64_t stop_drift(const void *self, double h, const msri_flock *block,
+                           const msri_places *from, msri_debts *debts) {
+  return msri_supports_stop(self, h, block, from, debts, walk);
+}
+
 /* Half of the velocity's change comes before the drift, half after it, so that a bounce costs no
  * energy. */
 static uint64_t bounce(const void *self, size_t n, double h, const double *q0, const double *v0,
@@ -192,4 +197,4 @@ static uint64_t rebound(const void *self, size_t n, const bool *held, const doub
 }
 
 const msri_contact msri_impacts_kept = {
-    .drift = drift, .bounce = bounce, .hold = hold, .rebound = rebound};
+    .drift = drift, .stop_drift = stop_drift, .bounce = bounce, .hold = hold, .rebound = rebound};

@@ -133,6 +133,11 @@ static uint64_t drift(const void *self, double h, const msri_flock *flock, msri_
   return msri_supports_drift(self, h, flock, debts, walk);
 }
 
+static uint64_t stop_drift(const void *self, double h, const msri_flock *block,
+                           const msri_places *from, msri_debts *debts) {
+  return msri_supports_stop(self, h, block, from, debts, walk);
+}
+
 /* The flight that mass i, of coordinates i and j, made in a step. Its acceleration is that which
  * leads to q from (q0, v0), near the one at the start, if one at the end is to follow; else the
  * mean. */
@@ -208,4 +213,4 @@ static uint64_t strike(const void *self, size_t n, const double *q0, double *q, 
 }
 
 const msri_contact msri_impacts_located = {
-    .drift = drift, .bounce = bounce, .meet = meet, .strike = strike};
+    .drift = drift, .stop_drift = stop_drift, .bounce = bounce, .meet = meet, .strike = strike};

@@ -72,6 +72,7 @@ msr_status msri_supports_create(const msr_picture *picture, const msri_supports_
   s->width = picture->width;
   s->height = picture->height;
   s->options = *options;
+  s->kernel = msri_flock_widest();
   s->distance = (unsigned char *)(s->solid + words);
   mark(s, picture);
   msri_supports_measure(s);

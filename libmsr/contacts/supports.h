@@ -5,6 +5,7 @@
 #include "contacts/flock.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { MSRI_WORD = 64, MSRI_AXES = 2 };
 
@@ -12,6 +13,7 @@ enum { MSRI_WORD = 64, MSRI_AXES = 2 };
 typedef struct msri_supports {
   size_t width, height;
   msri_supports_options options;
+  const msri_flock_kernel *kernel;
   unsigned char *distance; /* [height + 2][width + 2], see clearance.c */
   uint64_t solid[];        /* [width * height / 64, rounded up]; rows from the bottom: y is up */
 } msri_supports;
@@ -77,29 +79,64 @@ static inline double msri_supports_gap(const msri_supports *s, double x, double 
   return (double)s->distance[row * (s->width + 2) + column] - 1;
 }
 
+/* The number of 0s below the lowest 1. */
+static inline unsigned msri_lowest_bit(uint64_t bits) {
+#ifdef __GNUC__
+  return (unsigned)__builtin_ctzll(bits);
+#else
+  unsigned n = 0;
+  for (; !(bits & 1); bits >>= 1) n++;
+  return n;
+#endif
+}
+
 /* What mass k does that wants to leave its pixel for `to` [2]. Returns the number of collisions. */
 typedef unsigned msri_walk(const msri_supports *s, double h, const msri_flock *flock, size_t k,
                            const double *to, msri_debts *debts);
 
-/* msri_contact's drift: those walk that leave their pixel and may come to a support. Inline, so
- * that nothing is called through a pointer. */
+/* Is there certainly nothing in the way between two pixels that touch? A way from one to the other
+ * goes through no pixels but these, and the two beside both if it's a diagonal. */
+static inline bool msri_supports_open(const msri_supports *s, const double *from,
+                                      const double *to) {
+  const size_t wide = s->width + 2;
+  const size_t r0 = msri_supports_cell(from[1], s->height),
+               r1 = msri_supports_cell(to[1], s->height);
+  const size_t c0 = msri_supports_cell(from[0], s->width), c1 = msri_supports_cell(to[0], s->width);
+  const unsigned char *row0 = s->distance + r0 * wide, *row1 = s->distance + r1 * wide;
+  const bool touch = r1 + 1 - r0 <= 2 && c1 + 1 - c0 <= 2;
+  return touch && row0[c0] > 0 && row0[c1] > 0 && row1[c0] > 0 && row1[c1] > 0;
+}
+
+/* msri_contact's stop_drift: those walk that have left their pixel and may have come to a support.
+ * Inline, so that nothing is called through a pointer. */
+static inline uint64_t msri_supports_stop(const msri_supports *s, double h, const msri_flock *f,
+                                          const msri_places *was, msri_debts *debts,
+                                          msri_walk *walk) {
+  uint64_t collisions = 0;
+  for (uint64_t left = s->kernel->leave(f, was); left > 0; left &= left - 1) {
+    const size_t k = msri_lowest_bit(left);
+    const double from[] = {was->x[k], was->y[k]}, to[] = {f->x[k], f->y[k]};
+    const double gap = msri_supports_gap(s, from[0], from[1]);
+    if (fabs(to[0] - from[0]) < gap && fabs(to[1] - from[1]) < gap) continue;
+    if (msri_supports_open(s, from, to)) continue;
+    f->x[k] = from[0], f->y[k] = from[1];
+    collisions += walk(s, h, f, k, to, debts);
+  }
+  return collisions;
+}
+
+/* msri_contact's drift. */
 static inline uint64_t msri_supports_drift(const msri_supports *s, double h,
                                            const msri_flock *flock, msri_debts *debts,
                                            msri_walk *walk) {
-  int64_t leaves[MSRI_FLOCK_BLOCK];
+  double x[MSRI_FLOCK_BLOCK], y[MSRI_FLOCK_BLOCK];
   uint64_t collisions = 0;
   for (size_t from = 0; from < flock->n; from += MSRI_FLOCK_BLOCK) {
     const msri_flock f = msri_flock_part(flock, from);
-    msri_flock_move(&f, h, leaves);
-    for (size_t k = 0; k < f.n; k++) {
-      if (!leaves[k]) continue;
-      const double to[] = {f.x[k] + h * f.ux[k], f.y[k] + h * f.uy[k]};
-      const double gap = msri_supports_gap(s, f.x[k], f.y[k]);
-      if (fabs(to[0] - f.x[k]) < gap && fabs(to[1] - f.y[k]) < gap)
-        f.x[k] = to[0], f.y[k] = to[1];
-      else
-        collisions += walk(s, h, &f, k, to, debts);
-    }
+    memcpy(x, f.x, f.n * sizeof *x);
+    memcpy(y, f.y, f.n * sizeof *y);
+    s->kernel->glide(&f, h);
+    collisions += msri_supports_stop(s, h, &f, &(msri_places){x, y}, debts, walk);
   }
   return collisions;
 }

@@ -15,7 +15,8 @@ typedef struct place {
 typedef struct msri_task {
   int ways; /* of springs, from MSRI_RIGHT on */
   int besides;
-  double *ax, *ay; /* [n]: accelerations go here, and cells do not drift; NULL: they do */
+  bool traces; /* to: */
+  msri_trace trace;
 } msri_task;
 
 #if MSRI_WIDE
@@ -47,15 +48,15 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
                                                          const msri_motion *motion) {              \
     go_##width(s, motion, &(msri_task){.ways = number, .besides = with});                          \
   }
-#define KICK(target, width, number, with)                                                          \
-  target static double kick_##width##_##number##_##with(                                           \
-      const msri_cells *s, const msri_motion *motion, double *ax, double *ay) {                    \
-    return go_##width(s, motion,                                                                   \
-                      &(msri_task){.ways = number, .besides = with, .ax = ax, .ay = ay});          \
+#define TRACE(target, width, number, with)                                                         \
+  target static double trace_##width##_##number##_##with(                                          \
+      const msri_cells *s, const msri_motion *motion, const msri_trace *to) {                      \
+    return go_##width(                                                                             \
+        s, motion, &(msri_task){.ways = number, .besides = with, .traces = true, .trace = *to});   \
   }
 #define BOTH(target, width, number, with)                                                          \
   ADVANCE(target, width, number, with)                                                             \
-  KICK(target, width, number, with)
+  TRACE(target, width, number, with)
 #define KERNELS(target, width, number)                                                             \
   BOTH(target, width, number, 0)                                                                   \
   BOTH(target, width, number, 1)                                                                   \
@@ -70,7 +71,7 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
 #define ALL(kernel)                                                                                \
   { kernel##_0, kernel##_1, kernel##_2, kernel##_3, kernel##_0, kernel##_1, kernel##_6, kernel##_7 }
 #define ROW(width, number)                                                                         \
-  { ALL(advance_##width##_##number), ALL(kick_##width##_##number), pull_##width##_##number, }
+  { ALL(advance_##width##_##number), ALL(trace_##width##_##number), pull_##width##_##number, }
 
 #if MSRI_WIDE
 KERNELS(MSRI_AVX512, 8, BELOW)

@@ -39,6 +39,11 @@ typedef struct msri_cells {
   ptrdiff_t back[MSRI_WAYS];
 } msri_cells;
 
+/* Of n cells, those of the blocks: their accelerations, and where they were before they drifted. */
+typedef struct msri_trace {
+  double *ax, *ay, *x, *y; /* [n] */
+} msri_trace;
+
 /* What may act beside the springs: a weight; air between the kicks, which may push. */
 enum { MSRI_WITH_WEIGHT = 1, MSRI_WITH_AIR = 2, MSRI_WITH_PUSH = 4, MSRI_BESIDES = 8 };
 
@@ -60,11 +65,10 @@ typedef struct msri_lattice_kernel {
   struct {
     /* Forces, then kick, kick, drift; by what acts beside the springs. */
     void (*advance[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
-    /* The same without the drift. Returns the largest velocity along an axis; NaN if one is.
-     * Accelerations go to ax, ay [n], those of the blocks.
-     */
-    double (*kick[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion, double *ax,
-                                 double *ay);
+    /* The same; what a drift past something in the way is to know goes to trace. Returns the
+     * largest velocity along an axis; NaN if one is. */
+    double (*trace[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion,
+                                  const msri_trace *trace);
     /* Only the forces of the springs to the cells below. */
     void (*pull)(const msri_cells *cells, const msri_motion *motion);
   } of[2]; /* 4 neighbours, 8 neighbours */

@@ -50,9 +50,9 @@ static void place_room(msr_state *state, const room *r, const msri_graph *graph,
 }
 
 static size_t armed_bytes(const msr_plan *plan) {
-  const size_t n = plan->figures.masses;
-  const size_t ranges = msri_plan_sweeps(plan) ? plan->objects.n_blocks : msri_flock_blocks(n);
-  return ranges * sizeof(msri_armed);
+  const msri_objects *o = &plan->objects;
+  if (!msri_plan_sweeps(plan)) return msri_flock_blocks(plan->figures.masses) * sizeof(msri_armed);
+  return o->n_rows * sizeof(msri_armed_row) + o->n_blocks * sizeof(msri_armed_block);
 }
 
 static layout lay_out(const msr_plan *plan) {
@@ -112,6 +112,8 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .before = (void *)(arrays + l.before),
       .ahead = (void *)(arrays + l.ahead),
       .armed = (void *)(arrays + l.armed),
+      .rows = {(void *)(arrays + l.armed),
+               (void *)(arrays + l.armed + plan->objects.n_rows * sizeof(msri_armed_row))},
       .care = {.kept = (void *)(arrays + l.kept)},
       .middle = (void *)(arrays + l.middle),
       .drive = (void *)(arrays + l.drive),

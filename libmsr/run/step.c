@@ -160,7 +160,7 @@ static msr_status sweep(msr_state *state, uint64_t end, const msri_poll *poll, b
   const double most = sqrt(2 * state->guard.most / state->plan->uniform_mass);
   msri_still still = {0};
   const msri_swept swept = {state->q,       state->q + n,       state->v,     state->v + n,
-                            state->scratch, state->meter.calls, state->armed, &still};
+                            state->scratch, state->meter.calls, state->rows, &still};
   const msri_course ahead = {state->plan, state->iteration, state->substep,
                              steps_to(state, end, poll)};
   msr_status status = msri_poll_call(poll, state);

@@ -54,10 +54,10 @@ static size_t pulls_size(int ways, size_t stride) {
   return 2 * (size_t)(ways - MSRI_BELOW) * stride;
 }
 
-/* Accelerations, what is owed, and the velocities before that. Marks are needed before. */
+/* Traces, what is owed, and the velocities before that. Marks are needed before. */
 static size_t size_of(int ways, bool meets, size_t cells, size_t around, size_t masses) {
   const size_t marks = msri_marks_bytes(cells, around) / sizeof(double) + 1;
-  const size_t meeting = meets ? 2 * cells + MSRI_MEET_DEBT * masses : 0;
+  const size_t meeting = meets ? MSRI_MEET_TRACE * cells + MSRI_MEET_DEBT * masses : 0;
   const size_t later = pulls_size(ways, cells + 2 * around) + meeting;
   return msri_field_size(cells, around) + (later > marks ? later : marks);
 }
@@ -156,10 +156,10 @@ static double step_past(const msri_pass *pass, const msri_stage *stage, const ms
   msri_tally *tally = meet->tally;
   const bool timed = msri_tally_is_turn(tally), drifts = stage->motion.drift != 0;
   double start = timed ? msri_clock_now() : 0;
-  const double fastest = msri_meet_kick(pass, stage, cells, meet);
+  const double fastest = msri_meet_advance(pass, stage, cells, meet);
   if (timed) start = msri_tally_add(tally, start, &tally->kicks);
   for (walk w = {.group = group}; drifts && is_on(&w); w.r++)
-    msri_meet_drift(pass, stage, w.row, fastest, cells, w.at, meet);
+    msri_meet_stop(pass, stage, w.row, fastest, cells, w.at, meet);
   if (timed) msri_tally_add(tally, start, &tally->drifts);
   return fastest;
 }

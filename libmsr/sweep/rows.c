@@ -61,9 +61,9 @@ static size_t marks_size(size_t width) {
   return msri_round_up(MARKED * bytes, MSRI_MARGIN * sizeof(double)) / sizeof(double);
 }
 
-/* Accelerations are those of one row at a time. */
+/* Traces are those of one row at a time. */
 static size_t meet_size(size_t width, int stages) {
-  return 2 * wide(width) + slots(stages) * MSRI_MEET_DEBT * wide(width);
+  return MSRI_MEET_TRACE * wide(width) + slots(stages) * MSRI_MEET_DEBT * wide(width);
 }
 
 static size_t ring_size(size_t width, int stages) {
@@ -172,10 +172,10 @@ static double step_past(wave *w, int stage, size_t row, const msri_cells *cells)
   msri_tally *tally = meet->tally;
   const bool timed = msri_tally_is_turn(tally);
   double start = timed ? msri_clock_now() : 0;
-  const double fastest = msri_meet_kick(pass, &pass->stage[stage], cells, meet);
+  const double fastest = msri_meet_advance(pass, &pass->stage[stage], cells, meet);
   if (timed) start = msri_tally_add(tally, start, &tally->kicks);
   if (pass->stage[stage].motion.drift != 0)
-    msri_meet_drift(pass, &pass->stage[stage], w->object->row + row, fastest, cells, 0, meet);
+    msri_meet_stop(pass, &pass->stage[stage], w->object->row + row, fastest, cells, 0, meet);
   if (timed) msri_tally_add(tally, start, &tally->drifts);
   return fastest;
 }
@@ -264,8 +264,9 @@ static void place_slots(wave *w, double *memory, msri_tally *tally) {
     s->row = none;
     s->at = msri_field_place(n, MSRI_MARGIN, w->ring + k * size);
     if (!w->pass->meets) continue;
-    s->meet = msri_meet_place(0, w->wide, memory + (2 + k * MSRI_MEET_DEBT) * w->wide, tally);
-    s->meet.ax = memory, s->meet.ay = memory + w->wide;
+    double *owed = memory + (MSRI_MEET_TRACE + k * MSRI_MEET_DEBT) * w->wide;
+    s->meet = msri_meet_place(0, w->wide, owed, tally);
+    s->meet.trace = msri_meet_trace(w->wide, memory);
   }
 }
 

@@ -6,6 +6,7 @@
  * where they are, and so are the kicks before them (tally.h). */
 #include "sweep/shares.h"
 
+#include "sweep/meet.h"
 #include "sweep/patch.h"
 
 #include <math.h>
@@ -33,7 +34,8 @@ size_t msri_shares_size(const msr_plan *plan, int ways) {
   for (size_t n = 0; n < plan->objects.n; n++) {
     const msri_object part = window(&plan->objects.object[n], 0);
     const msri_group alone = msri_group_of(&part, 1);
-    const size_t size = msri_patch_size(ways, false, &alone) + 2 * msri_patch_cells(&alone);
+    const size_t size =
+        msri_patch_size(ways, false, &alone) + MSRI_MEET_TRACE * msri_patch_cells(&alone);
     if (most < size) most = size;
   }
   return most;
@@ -59,7 +61,7 @@ typedef struct subject {
   const msri_pass *pass;
   msri_cells cells;
   msri_motion motion;
-  double *a; /* [2 cells]: accelerations */
+  msri_trace trace;
 } subject;
 
 enum { PULL = MSRI_BESIDES, KERNELS }; /* after those of what acts beside the springs */
@@ -70,7 +72,7 @@ static void run(const subject *s, int which) {
   if (which == PULL)
     kernel->of[eight].pull(&s->cells, &s->motion);
   else if (s->pass->meets)
-    kernel->of[eight].kick[which](&s->cells, &s->motion, s->a, s->a + s->cells.n);
+    kernel->of[eight].trace[which](&s->cells, &s->motion, &s->trace);
   else
     kernel->of[eight].advance[which](&s->cells, &s->motion);
 }
@@ -122,8 +124,9 @@ void msri_shares_measure(msri_shares *s, const msri_pass *pass) {
   const double start = msri_clock_now();
   const msri_object part = choose(s, &pass->plan->objects);
   const msri_group alone = msri_group_of(&part, 1);
+  double *trace = s->memory + msri_patch_size(pass->ways, false, &alone);
   const subject cells = {pass, msri_patch_open(pass, &alone, s->memory), at_rest(pass),
-                         s->memory + msri_patch_size(pass->ways, false, &alone)};
+                         msri_meet_trace(msri_patch_cells(&alone), trace)};
   const double copying = 2 * (msri_clock_now() - start);
   for (int n = 0; n < KERNELS; n++) took[n] = (double)INFINITY;
   for (int round = 0; round < ROUNDS; round++)
