@@ -217,6 +217,7 @@ static void check_trace(const msri_lattice_kernel *kernel, const row *from, cons
       if (from->mass[c] || (what < 2 && !is_listed(from, c)))
         assert_memory_equal(&told_of[what][c], &wanted[what][c], sizeof told_of[0][0]);
   assert_memory_equal(&told, &fastest, sizeof told);
+  assert_true(kernel->fastest(&at) == fastest);
 }
 
 static void check_pull(const msri_lattice_kernel *kernel, const row *from, const msri_motion *m,
@@ -345,6 +346,7 @@ static void the_fastest_is_found(void **state) {
       double trace[4][SIZE];
       const msri_trace to = {trace[0], trace[1], trace[2], trace[3]};
       const msri_cells cells = cells_of(&is);
+      assert_true(isnan(kernel->fastest(&cells)));
       assert_true(isnan(kernel->of[0].trace[1](&cells, &m, &to)));
     }
   }

@@ -73,25 +73,27 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
 #define ROW(width, number)                                                                         \
   { ALL(advance_##width##_##number), ALL(trace_##width##_##number), pull_##width##_##number, }
 
+#define WIDTH(target, width)                                                                       \
+  KERNELS(target, width, BELOW)                                                                    \
+  KERNELS(target, width, BESIDE)                                                                   \
+  target static double fastest_##width(const msri_cells *s) { return look_at_speeds_##width(s); }
+#define ROWS(width) {ROW(width, BELOW), ROW(width, BESIDE)}, fastest_##width
+
 #if MSRI_WIDE
-KERNELS(MSRI_AVX512, 8, BELOW)
-KERNELS(MSRI_AVX512, 8, BESIDE)
-KERNELS(MSRI_AVX2, 4, BELOW)
-KERNELS(MSRI_AVX2, 4, BESIDE)
-KERNELS(, 2, BELOW)
-KERNELS(, 2, BESIDE)
+WIDTH(MSRI_AVX512, 8)
+WIDTH(MSRI_AVX2, 4)
+WIDTH(, 2)
 #else
-KERNELS(, 1, BELOW)
-KERNELS(, 1, BESIDE)
+WIDTH(, 1)
 #endif
 
 const msri_lattice_kernel msri_lattice_kernels[] = {
 #if MSRI_WIDE
-    {"AVX-512", msri_has_avx512, {ROW(8, BELOW), ROW(8, BESIDE)}},
-    {"AVX2", msri_has_avx2, {ROW(4, BELOW), ROW(4, BESIDE)}},
-    {"SSE2", NULL, {ROW(2, BELOW), ROW(2, BESIDE)}},
+    {"AVX-512", msri_has_avx512, ROWS(8)},
+    {"AVX2", msri_has_avx2, ROWS(4)},
+    {"SSE2", NULL, ROWS(2)},
 #else
-    {"any", NULL, {ROW(1, BELOW), ROW(1, BESIDE)}},
+    {"any", NULL, ROWS(1)},
 #endif
 };
 

@@ -72,6 +72,8 @@ typedef struct msri_lattice_kernel {
     /* Only the forces of the springs to the cells below. */
     void (*pull)(const msri_cells *cells, const msri_motion *motion);
   } of[2]; /* 4 neighbours, 8 neighbours */
+  /* The largest velocity of a mass along an axis; NaN if one is. */
+  double (*fastest)(const msri_cells *cells);
 } msri_lattice_kernel;
 
 /* Widest first; the last runs anywhere. */

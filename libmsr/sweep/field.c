@@ -4,7 +4,6 @@
 #include "base/machine.h"
 #include "forces/motion.h"
 
-#include <math.h>
 #include <string.h>
 
 /* ---- Memory: x, y, vx, vy, each with what is around it; blocks and how many there are */
@@ -138,18 +137,6 @@ void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
 
 /* ---- Steps */
 
-/* Along an axis; what is no number is the fastest. */
-static double fastest_of(const msri_cells *cells) {
-  double fastest = 0;
-  for (size_t b = 0; b < cells->blocks; b++) {
-    size_t c = cells->block[b].cell;
-    for (unsigned mass = cells->block[b].mass; mass > 0; mass /= 2, c++)
-      if (mass % 2)
-        fastest = msri_worse(msri_worse(fabs(cells->vx[c]), fabs(cells->vy[c])), fastest);
-  }
-  return fastest;
-}
-
 double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells) {
   const msri_motion *motion = &stage->motion;
   if (stage->forces) {
@@ -159,5 +146,5 @@ double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msr
     msri_coast(cells->n, motion, 0, cells->vx, cells->x);
     msri_coast(cells->n, motion, 1, cells->vy, cells->y);
   }
-  return stage->tells ? fastest_of(cells) : 0;
+  return stage->tells ? pass->kernel->fastest(cells) : 0;
 }
