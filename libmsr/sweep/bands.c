@@ -38,7 +38,7 @@ unsigned msri_bands_parts(const msri_bands *bands, unsigned threads) {
 int msri_bands_stages(const msri_bands *bands, unsigned parts) {
   const size_t fit = cache / (8 * bands->length * sizeof(double));
   const size_t most = parts > 1 ? bands->n / (2 * (size_t)parts) : bands->n;
-  const size_t stages = msri_lesser(msri_lesser(fit, most), MSRI_MOST_STAGES);
+  const size_t stages = msri_lesser(msri_lesser(fit, most), MSRI_ROWS_STAGES);
   return stages < 1 ? 1 : (int)stages;
 }
 

@@ -80,6 +80,13 @@ void msri_field_empty(const msri_field *f, const msri_objects *objects, size_t r
   }
 }
 
+void msri_field_fetch(const msri_swept *state, size_t begin, size_t end) {
+  for (size_t i = begin; i < end; i += MSRI_MARGIN) {
+    msri_prefetch(state->x + i), msri_prefetch(state->y + i);
+    msri_prefetch(state->vx + i), msri_prefetch(state->vy + i);
+  }
+}
+
 static bool is_same(const double *a, const double *b, size_t n) {
   return memcmp(a, b, n * sizeof *a) == 0;
 }

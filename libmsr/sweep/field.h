@@ -38,6 +38,9 @@ void msri_field_fill(const msri_field *f, const msri_objects *objects, size_t ro
 void msri_field_empty(const msri_field *f, const msri_objects *objects, size_t row,
                       const msri_swept *to, size_t at);
 
+/* Asks memory for masses begin .. end-1, soon to be needed. */
+void msri_field_fetch(const msri_swept *state, size_t begin, size_t end);
+
 /* Are a row's cells what the state holds, bit by bit? */
 bool msri_field_is(const msri_field *f, const msri_objects *objects, size_t row,
                    const msri_swept *state, size_t at);

@@ -25,7 +25,8 @@ static bool takes(const msri_group *group, const msri_object *object) {
 }
 
 msri_group msri_group_of(const msri_object *object, size_t most) {
-  msri_group g = {object, 1, object->rows, object->width, object->masses};
+  if (most == 0) return (msri_group){0};
+  msri_group g = {object, 1, object->rows, object->width, object->masses, NULL};
   for (; g.n < most && takes(&g, &object[g.n]); g.n++) {
     const msri_object *next = &object[g.n];
     if (g.rows < next->rows) g.rows = next->rows;
@@ -164,6 +165,21 @@ static double step_past(const msri_pass *pass, const msri_stage *stage, const ms
   return fastest;
 }
 
+/* A row of an object. */
+static void fetch_row(const msri_pass *pass, size_t row) {
+  const msri_objects *o = &pass->plan->objects;
+  for (size_t n = o->row[row]; n < o->row[row + 1]; n++)
+    msri_field_fetch(pass->state, o->piece[n].first, o->piece[n].first + o->piece[n].count);
+}
+
+/* Some of the rows that come next: all of them, in as many goes as there are stages. */
+static void fetch(const msri_pass *pass, walk *next) {
+  const size_t rows = next->group ? next->group->n * next->group->rows : 0;
+  const size_t stages = (size_t)pass->stages;
+  for (size_t n = 0; n < (rows + stages - 1) / stages && is_on(next); n++, next->r++)
+    fetch_row(pass, next->row);
+}
+
 double msri_patch_run(const msri_pass *pass, const msri_group *group, bool filled, bool kept,
                       double *memory, msri_tally *tally, bool *same) {
   const place p = place_of(group, memory);
@@ -172,11 +188,13 @@ double msri_patch_run(const msri_pass *pass, const msri_group *group, bool fille
   if (!filled) fill(pass, group, &p);
   const msri_cells cells = cells_of(pass, group, &p);
   if (pass->meets) meet = msri_meet_place(cells.n, group->masses, meeting, tally);
+  walk next = {.group = group->next};
   for (int s = 0; s < pass->stages; s++) {
     const msri_stage *stage = &pass->stage[s];
     const double speed = pass->meets ? step_past(pass, stage, group, &cells, &meet)
                                      : msri_field_step(pass, stage, &cells);
     fastest = msri_worse(speed, fastest);
+    fetch(pass, &next);
   }
   if (same) *same = is_unchanged(pass, group, &p.field);
   if (!kept) empty(pass, group, &p.field);

@@ -12,10 +12,11 @@
 typedef struct msri_group {
   const msri_object *object; /* [n], one after the other */
   size_t n;
-  size_t rows, width, masses; /* with what is between them */
+  size_t rows, width, masses;    /* with what is between them */
+  const struct msri_group *next; /* the one that comes after it, fetched from memory meanwhile */
 } msri_group;
 
-/* Of an object, and narrow ones of those after it, `most` in all. */
+/* Of an object, and narrow ones of those after it, `most` in all; none if that is 0. */
 msri_group msri_group_of(const msri_object *object, size_t most);
 
 /* Cells of a group in a patch: its rectangle, and one at the end of each row, so that the right

@@ -6,7 +6,8 @@
 #include "sweep/field.h"
 #include "sweep/tally.h"
 
-enum { MSRI_MOST_STAGES = 32 };
+/* Of a pass; of one with rows or bands. */
+enum { MSRI_MOST_STAGES = 64, MSRI_ROWS_STAGES = 32 };
 
 /* A part of an object's rows, for one thread. Stage s of part p goes over rows begin[p] + s up to
  * begin[p+1] + s: each part leaves a wedge to the one above, which finds there the rows as they

@@ -309,36 +309,43 @@ static double run_mesh(msri_sweep *s, unsigned thread, unsigned *turn) {
   return msri_bands_run(&s->pass, &part);
 }
 
-/* Small objects from the n-th on that are a thread's and are stepped as usual. */
-static size_t count_alike(const msri_sweep *s, size_t n, unsigned thread) {
+/* Small objects from the n-th on that are a thread's and are stepped as usual; maybe none. */
+static msri_group group_at(const msri_sweep *s, size_t n, unsigned thread) {
   const msr_plan *plan = s->pass.plan;
   const size_t first = n, last = msri_lesser(plan->objects.n, n + share_of(plan, s->threads));
   while (n < last && s->rest.how[n] == MSRI_STEPPED && owner_of(s, n) == thread &&
          is_small(plan, &plan->objects.object[n]))
     n++;
-  return n - first;
+  return msri_group_of(&plan->objects.object[first], n - first);
+}
+
+static double run_group(msri_sweep *s, const msri_group *group, unsigned thread) {
+  worker *me = &s->worker[thread];
+  return msri_patch_run(&s->pass, group, s->filled, s->kept, me->patch, &me->tally, NULL);
+}
+
+/* Of an object that isn't small, or is looked at. */
+static double run_other(msri_sweep *s, size_t n, unsigned thread, unsigned *turn) {
+  const msri_object *object = &s->pass.plan->objects.object[n];
+  if (s->rest.how[n] == MSRI_LOOKED_AT) return look_at(s, n, thread);
+  if (s->rest.how[n] == MSRI_LEFT_OUT || is_small(s->pass.plan, object)) return 0;
+  return run_large(s, object, thread, owner_of(s, n), turn);
 }
 
 static void work(void *self, unsigned thread) {
   msri_sweep *s = self;
-  const msri_objects *objects = &s->pass.plan->objects;
+  const size_t objects = s->pass.plan->objects.n;
   worker *me = &s->worker[thread];
   unsigned turn = s->turn;
   me->fastest = 0;
   me->tally.met = me->stays = 0;
-  for (size_t n = 0, taken; n < objects->n; n += taken) {
-    const msri_object *object = &objects->object[n];
-    const size_t alike = count_alike(s, n, thread);
-    double fastest = 0;
-    taken = 1;
-    if (alike > 0) {
-      const msri_group group = msri_group_of(object, alike);
-      fastest = msri_patch_run(&s->pass, &group, s->filled, s->kept, me->patch, &me->tally, NULL);
-      taken = group.n;
-    } else if (s->rest.how[n] == MSRI_LOOKED_AT)
-      fastest = look_at(s, n, thread);
-    else if (s->rest.how[n] == MSRI_STEPPED && !is_small(s->pass.plan, object))
-      fastest = run_large(s, object, thread, owner_of(s, n), &turn);
+  msri_group group = objects > 0 ? group_at(s, 0, thread) : (msri_group){0}, next;
+  for (size_t n = 0, taken; n < objects; n += taken, group = next) {
+    taken = group.n > 0 ? group.n : 1;
+    next = n + taken < objects ? group_at(s, n + taken, thread) : (msri_group){0};
+    group.next = next.n > 0 ? &next : NULL;
+    const double fastest =
+        group.n > 0 ? run_group(s, &group, thread) : run_other(s, n, thread, &turn);
     me->fastest = msri_worse(fastest, me->fastest);
   }
   if (has_bands(s->pass.plan)) me->fastest = run_mesh(s, thread, &turn);
