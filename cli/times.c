@@ -30,7 +30,7 @@ static void print_task(table *t, const char *name, const outputs *written, task 
 }
 
 void times_print(FILE *out, const effect_list *list, const msr_state *state, const outputs *written,
-                 double seconds) {
+                 const times *looks, double seconds) {
   const int64_t all = (int64_t)llround(1e6 * seconds);
   table t = {out, all, all};
   for (size_t i = 0; i < list->n; i++) {
@@ -42,6 +42,8 @@ void times_print(FILE *out, const effect_list *list, const msr_state *state, con
     }
     if (e->on) fputs("\n", out);
   }
+  print_effect(&t, "energy", looks->seconds, looks->calls, "look");
+  fputs("\n", out);
   print_row(&t, "other", t.rest);
   fputs("\n", out);
   print_row(&t, "all", t.all);

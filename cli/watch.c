@@ -15,7 +15,10 @@ void watch_start(watch *w, const settings *s, const msr_plan *plan) {
   signals_catch();
 }
 
-static void follow_energy(watch *w, uint64_t frame, double energy) {
+static void follow_energy(watch *w, uint64_t frame, const msr_state *state) {
+  const double start = status_line_now(), energy = msr_state_energy(state).total;
+  w->looking += status_line_now() - start;
+  w->looks++;
   if (frame == 0) w->first_energy = w->least_energy = w->most_energy = energy;
   w->least_energy = fmin(w->least_energy, energy);
   w->most_energy = fmax(w->most_energy, energy);
@@ -24,7 +27,7 @@ static void follow_energy(watch *w, uint64_t frame, double energy) {
 static msr_status look(void *self, const msr_state *state, uint64_t frame, msr_error *err) {
   watch *w = self;
   (void)err;
-  if (w->s->verbose) follow_energy(w, frame, msr_state_energy(state).total);
+  if (w->s->verbose) follow_energy(w, frame, state);
   return MSR_OK;
 }
 
@@ -125,7 +128,8 @@ void watch_print_summary(const watch *w, const msr_state *state, const effect_li
   if (w->s->verbose) print_leaps(w, state);
   if (w->s->verbose) print_rest(state);
   fputs("\n", stderr);
-  if (list) times_print(stderr, list, state, out, took);
+  const times looks = {w->looking, w->looks};
+  if (list) times_print(stderr, list, state, out, &looks, took);
   tell_of_care(w, state);
   warn_of_heating(w, msr_state_energy_gain(state));
 }

@@ -11,6 +11,8 @@ typedef struct watch {
   status_line line;
   _Atomic uint64_t frames; /* that all outputs took and completed, maybe in another thread */
   double first_energy, least_energy, most_energy;
+  uint64_t looks; /* at the energy */
+  double looking; /* [s] */
 } watch;
 
 /* Before outputs are opened: from here on a signal ends the run, so that they are closed. */
