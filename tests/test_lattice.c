@@ -181,6 +181,10 @@ static const msri_lattice_kernel *kernel_here(size_t n) {
   }
 }
 
+static const msri_loops *loops_of(const msri_lattice_kernel *kernel, int ways) {
+  return ways == MSRI_WAYS ? &kernel->eight : &kernel->four;
+}
+
 static void assert_rows(const msri_lattice_kernel *kernel, const char *what, int ways, int besides,
                         const row *is, const row *due) {
   if (memcmp(is, due, sizeof *is) != 0)
@@ -194,7 +198,7 @@ static void check_advance(const msri_lattice_kernel *kernel, const row *from, co
   row due = *from, is = *from;
   const msri_cells at = cells_of(&is);
   advance_cells(&due, m, ways, besides);
-  kernel->of[ways == MSRI_WAYS].advance[besides](&at, m);
+  loops_of(kernel, ways)->advance[besides](&at, m);
   assert_rows(kernel, "advance", ways, besides, &is, &due);
 }
 
@@ -210,7 +214,7 @@ static void check_trace(const msri_lattice_kernel *kernel, const row *from, cons
   memcpy(wanted[3] + AROUND, before.y, before.n * sizeof(double));
   accelerate(&same, m, ways, besides, wanted[0], wanted[1]);
   const double fastest = advance_cells(&due, m, ways, besides);
-  const double told = kernel->of[ways == MSRI_WAYS].trace[besides](&at, m, &trace);
+  const double told = loops_of(kernel, ways)->trace[besides](&at, m, &trace);
   assert_rows(kernel, "trace", ways, besides, &is, &due);
   for (int what = 0; what < 4; what++)
     for (size_t c = 0; c < SIZE; c++)
@@ -226,7 +230,7 @@ static void check_pull(const msri_lattice_kernel *kernel, const row *from, const
   double a[2][SIZE];
   const msri_cells at = cells_of(&is);
   accelerate(&due, m, ways, 0, a[0], a[1]);
-  kernel->of[ways == MSRI_WAYS].pull(&at, m);
+  loops_of(kernel, ways)->pull(&at, m);
   assert_rows(kernel, "pull", ways, 0, &is, &due);
 }
 
@@ -318,7 +322,7 @@ static void forces_may_take_each_others_place(void **state) {
               due.above[way][axis][c] = r.below[way][axis][c + (size_t)shift[way]];
         }
         advance_cells(&due, &m, ways, 0);
-        kernel->of[ways == MSRI_WAYS].advance[0](&at, &m);
+        loops_of(kernel, ways)->advance[0](&at, &m);
         assert_memory_equal(is.vx, due.vx, sizeof is.vx);
         assert_memory_equal(is.vy, due.vy, sizeof is.vy);
         assert_memory_equal(is.below, due.below, sizeof is.below);
@@ -347,7 +351,7 @@ static void the_fastest_is_found(void **state) {
       const msri_trace to = {trace[0], trace[1], trace[2], trace[3]};
       const msri_cells cells = cells_of(&is);
       assert_true(isnan(kernel->fastest(&cells)));
-      assert_true(isnan(kernel->of[0].trace[1](&cells, &m, &to)));
+      assert_true(isnan(kernel->four.trace[1](&cells, &m, &to)));
     }
   }
 }

@@ -77,7 +77,7 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
   KERNELS(target, width, BELOW)                                                                    \
   KERNELS(target, width, BESIDE)                                                                   \
   target static double fastest_##width(const msri_cells *s) { return look_at_speeds_##width(s); }
-#define ROWS(width) {ROW(width, BELOW), ROW(width, BESIDE)}, fastest_##width
+#define ROWS(width) ROW(width, BELOW), ROW(width, BESIDE), fastest_##width
 
 #if MSRI_WIDE
 WIDTH(MSRI_AVX512, 8)

@@ -58,20 +58,23 @@ typedef struct msri_motion {
   bool pushes;                /* else push is 0, and isn't added */
 } msri_motion;
 
-/* The same by vectors of some width: same bits by each of them. */
+/* Loops over cells, for springs to 4 neighbours or to 8. */
+typedef struct msri_loops {
+  /* Forces, then kick, kick, drift; by what acts beside the springs. */
+  void (*advance[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
+  /* The same; what a drift past something in the way is to know goes to trace. Returns the largest
+   * velocity along an axis; NaN if one is. */
+  double (*trace[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion,
+                                const msri_trace *trace);
+  /* Only the forces of the springs to the cells below. */
+  void (*pull)(const msri_cells *cells, const msri_motion *motion);
+} msri_loops;
+
+/* Those by vectors of some width: same bits by each of them. */
 typedef struct msri_lattice_kernel {
   const char *name;
   bool (*runs_here)(void); /* has this machine got such vectors? NULL: every one has */
-  struct {
-    /* Forces, then kick, kick, drift; by what acts beside the springs. */
-    void (*advance[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
-    /* The same; what a drift past something in the way is to know goes to trace. Returns the
-     * largest velocity along an axis; NaN if one is. */
-    double (*trace[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion,
-                                  const msri_trace *trace);
-    /* Only the forces of the springs to the cells below. */
-    void (*pull)(const msri_cells *cells, const msri_motion *motion);
-  } of[2]; /* 4 neighbours, 8 neighbours */
+  msri_loops four, eight;
   /* The largest velocity of a mass along an axis; NaN if one is. */
   double (*fastest)(const msri_cells *cells);
 } msri_lattice_kernel;

@@ -147,11 +147,10 @@ void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
 double msri_field_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells) {
   const msri_motion *motion = &stage->motion;
   if (stage->forces) {
-    const int eight = pass->ways > MSRI_BELOW + 1;
-    pass->kernel->of[eight].advance[msri_field_besides(pass, stage)](cells, motion);
+    pass->loops->advance[msri_field_besides(pass, stage)](cells, motion);
   } else {
     msri_coast(cells->n, motion, 0, cells->vx, cells->x);
     msri_coast(cells->n, motion, 1, cells->vy, cells->y);
   }
-  return stage->tells ? pass->kernel->fastest(cells) : 0;
+  return stage->tells ? pass->fastest(cells) : 0;
 }

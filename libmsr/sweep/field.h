@@ -9,7 +9,8 @@
 typedef struct msri_pass {
   const msr_plan *plan;
   const msri_swept *state;
-  const msri_lattice_kernel *kernel;
+  const msri_loops *loops;
+  double (*fastest)(const msri_cells *cells);
   const msri_stage *stage; /* [stages] */
   int stages;
   int ways;    /* of springs: to 4 or to 8 neighbours */

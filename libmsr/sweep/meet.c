@@ -30,7 +30,6 @@ static double kicked(const msri_motion *m, int axis, double v, double a) {
 /* The kernel moves all; those that are owed something are moved again, from where they were. */
 double msri_meet_advance(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells,
                          msri_meet *meet) {
-  const int eight = pass->ways > MSRI_BELOW + 1;
   const msri_motion *m = &stage->motion;
   const msri_trace *was = &meet->trace;
   msri_debts *debts = &meet->debts;
@@ -38,7 +37,7 @@ double msri_meet_advance(const msri_pass *pass, const msri_stage *stage, const m
     meet->before[2 * d] = cells->vx[debts->debt[d].mass];
     meet->before[2 * d + 1] = cells->vy[debts->debt[d].mass];
   }
-  double fastest = pass->kernel->of[eight].trace[msri_field_besides(pass, stage)](cells, m, was);
+  double fastest = pass->loops->trace[msri_field_besides(pass, stage)](cells, m, was);
   for (size_t d = 0; d < debts->n; d++) {
     const msri_debt *debt = &debts->debt[d];
     const size_t c = debt->mass;

@@ -207,7 +207,7 @@ static void step_row(wave *w, int stage, size_t row) {
 
 static void pull_below(wave *w, int stage, size_t row) {
   const msri_cells *cells = cells_at(w, stage, row, false);
-  w->pass->kernel->of[w->pass->ways > MSRI_BELOW + 1].pull(cells, &w->pass->stage[stage].motion);
+  w->pass->loops->pull(cells, &w->pass->stage[stage].motion);
 }
 
 /* Before a stage of a part but the first begins: the forces from the row above, which stays behind;

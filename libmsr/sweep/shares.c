@@ -67,14 +67,13 @@ typedef struct subject {
 enum { PULL = MSRI_BESIDES, KERNELS }; /* after those of what acts beside the springs */
 
 static void run(const subject *s, int which) {
-  const int eight = s->pass->ways > MSRI_BELOW + 1;
-  const msri_lattice_kernel *kernel = s->pass->kernel;
+  const msri_loops *loops = s->pass->loops;
   if (which == PULL)
-    kernel->of[eight].pull(&s->cells, &s->motion);
+    loops->pull(&s->cells, &s->motion);
   else if (s->pass->meets)
-    kernel->of[eight].trace[which](&s->cells, &s->motion, &s->trace);
+    loops->trace[which](&s->cells, &s->motion, &s->trace);
   else
-    kernel->of[eight].advance[which](&s->cells, &s->motion);
+    loops->advance[which](&s->cells, &s->motion);
 }
 
 /* Of once all cells. */

@@ -3,6 +3,7 @@
  * that a program built, band by band. */
 #include "sweep/sweep.h"
 
+#include "base/pixel.h"
 #include "integrators/splitting.h"
 #include "sweep/bands.h"
 #include "sweep/patch.h"
@@ -24,13 +25,11 @@ enum {
 
 /* One thread's; on lines of the cache of its own. */
 typedef struct worker {
-  double *patch, *rows; /* for an object that it has to itself */
+  _Alignas(LINE) double *patch, *rows; /* for objects that it has to itself */
   double fastest;
   msri_tally tally;
   uint64_t stays; /* collisions of what the step left as it was */
   unsigned turn;  /* see msri_sweep */
-  char apart[2 * LINE - 3 * sizeof(double *) - sizeof(msri_tally) - sizeof(uint64_t) -
-             sizeof(unsigned)];
 } worker;
 
 struct msri_sweep {
@@ -89,7 +88,7 @@ static int depth_for(const msr_plan *plan, const msri_object *object, int ways) 
 /* ---- Memory */
 
 static int ways_of(const msr_plan *plan) {
-  return plan->neighbours == 8 ? MSRI_WAYS : MSRI_BELOW + 1;
+  return msri_has_diagonals(plan->neighbours) ? MSRI_WAYS : MSRI_BELOW + 1;
 }
 
 /* Doubles of a thread: for small objects, for large ones and for parts of such. */
@@ -209,12 +208,15 @@ msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error
   made->threads = threads_for(plan, &r);
   made->depth = r.depth;
   made->alone = plan->objects.n <= made->threads;
-  made->pass = (msri_pass){.plan = plan,
-                           .kernel = msri_lattice_widest(),
-                           .stage = made->stage,
-                           .ways = ways_of(plan),
-                           .besides = besides_of(plan),
-                           .meets = msri_plan_meets(plan)};
+  const msri_lattice_kernel *kernel = msri_lattice_widest();
+  made->pass =
+      (msri_pass){.plan = plan,
+                  .loops = msri_has_diagonals(plan->neighbours) ? &kernel->eight : &kernel->four,
+                  .fastest = kernel->fastest,
+                  .stage = made->stage,
+                  .ways = ways_of(plan),
+                  .besides = besides_of(plan),
+                  .meets = msri_plan_meets(plan)};
   place(made, &r, plan->timed);
   made->rests = msri_rest_is_known(plan) &&
                 msri_course_stages(&(msri_course){.plan = plan, .steps = 1}) <= (uint64_t)r.depth;
