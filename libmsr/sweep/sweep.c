@@ -6,6 +6,7 @@
 #include "base/pixel.h"
 #include "integrators/splitting.h"
 #include "sweep/bands.h"
+#include "sweep/deal.h"
 #include "sweep/patch.h"
 #include "sweep/rest.h"
 #include "sweep/rows.h"
@@ -15,13 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-  PATCH_CELLS = 12288,  /* of a small object: they fit into a core's cache */
-  SHARED_MASSES = 8192, /* of an object that is worth sharing among threads */
-  LEAST_STAGES = 4,     /* of a pass: fewer would have threads wait for each other too often */
-  MOST_SHARED = 32,     /* small objects that are one thread's together */
-  LINE = 64             /* of the cache, and the widest vector */
-};
+enum { LINE = 64 }; /* of the cache, and the widest vector */
 
 /* One thread's; on lines of the cache of its own. */
 typedef struct worker {
@@ -35,8 +30,7 @@ typedef struct worker {
 struct msri_sweep {
   msri_pass pass;
   msri_team *team; /* NULL: one thread */
-  unsigned threads;
-  int depth;                /* most stages of a pass */
+  msri_deal deal;
   worker *worker;           /* [threads] */
   double **parts;           /* [threads]: memory of each for its parts of objects */
   _Atomic unsigned *opened; /* [threads]: wedges that each has left to the one above, */
@@ -50,146 +44,49 @@ struct msri_sweep {
   msri_stage stage[MSRI_MOST_STAGES];
 };
 
-/* ---- Who does what */
-
-static bool is_small(const msr_plan *plan, const msri_object *object) {
-  const msri_group alone = msri_group_of(object, 1);
-  const size_t cells = msri_patch_cells(&alone);
-  const bool dense = cells <= PATCH_CELLS && 4 * object->masses >= object->rows * object->width;
-  const bool many = plan->objects.n >= 4 * (size_t)plan->threads;
-  const bool shared = plan->threads > 1 && !many && !msri_plan_meets(plan);
-  return dense && (!shared || object->masses < SHARED_MASSES);
-}
-
-/* Parts of a large object: with fewer rows than twice the stages they'd be all wedge. */
-static unsigned parts_of(const msr_plan *plan, const msri_object *object, int depth) {
-  const size_t most = object->rows / (2 * (size_t)depth);
-  if (object->masses < SHARED_MASSES || most < 2 || msri_plan_meets(plan)) return 1;
-  return most < plan->threads ? (unsigned)most : plan->threads;
-}
-
-/* Objects that follow each other and are the same thread's. */
-static size_t share_of(const msr_plan *plan, size_t threads) {
-  const size_t n = plan->objects.n, share = threads > 1 ? n / (4 * threads) : n;
-  return share < 1 ? 1 : msri_lesser(share, MOST_SHARED);
-}
-
-static unsigned owner_of(const msri_sweep *s, size_t object) {
-  return (unsigned)(object / share_of(s->pass.plan, s->threads) % s->threads);
-}
-
-static int depth_for(const msr_plan *plan, const msri_object *object, int ways) {
-  const int stages = msri_rows_stages(ways, object->width);
-  const size_t shared = object->rows / (2 * (size_t)plan->threads);
-  if (plan->threads == 1 || msri_plan_meets(plan) || shared >= (size_t)stages) return stages;
-  return shared > LEAST_STAGES ? (int)shared : stages < LEAST_STAGES ? stages : LEAST_STAGES;
-}
-
 /* ---- Memory */
 
-static int ways_of(const msr_plan *plan) {
-  return msri_has_diagonals(plan->neighbours) ? MSRI_WAYS : MSRI_BELOW + 1;
+unsigned msri_sweep_threads(const msr_plan *plan) { return msri_deal_of(plan).threads; }
+
+/* Doubles of a thread; of all, to measure shares. */
+static size_t own_doubles(const msri_deal *d) { return d->patch + d->rows + d->parts; }
+
+static size_t shares_doubles(const msr_plan *plan) {
+  return plan->timed ? msri_shares_size(plan, msri_deal_ways(plan)) : 0;
 }
 
-/* Doubles of a thread: for small objects, for large ones and for parts of such. */
-typedef struct room {
-  int depth;
-  size_t patch, rows, parts;
-  size_t shares; /* of all threads */
-} room;
-
-static void widen(size_t *size, size_t least) {
-  if (*size < least) *size = least;
-}
-
-static bool has_bands(const msr_plan *plan) { return plan->bands.n > 0; }
-
-static unsigned parts_of_mesh(const msr_plan *plan) {
-  return msri_bands_parts(&plan->bands, plan->threads);
-}
-
-static room room_for_bands(const msr_plan *plan) {
-  const unsigned parts = parts_of_mesh(plan);
-  const int stages = msri_bands_stages(&plan->bands, parts);
-  const size_t size = msri_bands_size(&plan->bands, parts, stages);
-  return (room){.depth = stages, .parts = msri_round_up(size, LINE / sizeof(double))};
-}
-
-static room room_for(const msr_plan *plan) {
-  if (has_bands(plan)) return room_for_bands(plan);
-  const msri_objects *o = &plan->objects;
-  const int ways = ways_of(plan);
-  room r = {.depth = MSRI_MOST_STAGES};
-  for (size_t n = 0; n < o->n; n++) {
-    const int depth = depth_for(plan, &o->object[n], ways);
-    if (!is_small(plan, &o->object[n]) && depth < r.depth) r.depth = depth;
-  }
-  for (size_t n = 0; n < o->n; n++) {
-    const msri_object *object = &o->object[n];
-    const msri_group alone = msri_group_of(object, 1);
-    if (is_small(plan, object))
-      widen(&r.patch, msri_patch_size(ways, msri_plan_meets(plan), &alone));
-    else
-      widen(parts_of(plan, object, r.depth) > 1 ? &r.parts : &r.rows,
-            msri_rows_size(ways, msri_plan_meets(plan), object->width, r.depth));
-  }
-  if (share_of(plan, plan->threads) > 1)
-    widen(&r.patch, msri_patch_most(ways, msri_plan_meets(plan)));
-  r.shares = plan->timed ? msri_shares_size(plan, ways) : 0;
-  r.patch = msri_round_up(r.patch, LINE / sizeof(double));
-  r.rows = msri_round_up(r.rows, LINE / sizeof(double));
-  r.parts = msri_round_up(r.parts, LINE / sizeof(double));
-  return r;
-}
-
-/* No more than have something to do: an object, or a part of a large one. */
-static unsigned threads_for(const msr_plan *plan, const room *r) {
-  const msri_objects *o = &plan->objects;
-  if (has_bands(plan)) return parts_of_mesh(plan);
-  size_t most = o->n;
-  for (size_t n = 0; n < o->n; n++) widen(&most, parts_of(plan, &o->object[n], r->depth));
-  return most < plan->threads ? (unsigned)most : plan->threads;
-}
-
-unsigned msri_sweep_threads(const msr_plan *plan) {
-  const room r = room_for(plan);
-  return threads_for(plan, &r);
-}
-
-static size_t doubles_of(const room *r) { return r->patch + r->rows + r->parts; }
-
-static size_t bytes_of(const msr_plan *plan, const room *r) {
-  const size_t thread = sizeof(worker) + doubles_of(r) * sizeof(double) + sizeof(double *) +
+static size_t bytes_of(const msr_plan *plan, const msri_deal *d) {
+  const size_t thread = sizeof(worker) + own_doubles(d) * sizeof(double) + sizeof(double *) +
                         2 * sizeof(_Atomic unsigned);
   const size_t rest = plan->objects.n * (sizeof(bool) + 1);
-  return sizeof(msri_sweep) + threads_for(plan, r) * thread + r->shares * sizeof(double) + rest +
+  return sizeof(msri_sweep) + d->threads * thread + shares_doubles(plan) * sizeof(double) + rest +
          2 * LINE;
 }
 
 size_t msri_sweep_bytes(const msr_plan *plan) {
-  const room r = room_for(plan);
-  return bytes_of(plan, &r);
+  const msri_deal deal = msri_deal_of(plan);
+  return bytes_of(plan, &deal);
 }
 
-static void place(msri_sweep *s, const room *r, bool timed) {
-  const double clock = timed ? msri_shares_clock() : 0;
-  const size_t threads = s->threads;
+static void place(msri_sweep *s, const msr_plan *plan) {
+  const double clock = plan->timed ? msri_shares_clock() : 0;
+  const size_t threads = s->deal.threads, own = own_doubles(&s->deal);
   char *at = (char *)(s + 1);
   at += (LINE - (uintptr_t)at % LINE) % LINE;
   s->worker = (void *)at;
   double *doubles = (void *)(s->worker + threads);
-  double *shares = doubles + threads * doubles_of(r);
-  s->shares.memory = r->shares > 0 ? shares : NULL;
-  s->parts = (void *)(shares + r->shares);
+  double *shares = doubles + threads * own;
+  s->shares.memory = plan->timed ? shares : NULL;
+  s->parts = (void *)(shares + shares_doubles(plan));
   s->opened = (void *)(s->parts + threads);
   s->closed = s->opened + threads;
   s->rest.same = (void *)((char *)(s->parts + threads) + 2 * threads * sizeof *s->opened);
-  s->rest.how = (void *)(s->rest.same + s->pass.plan->objects.n);
-  for (size_t t = 0; t < threads; t++, doubles += doubles_of(r)) {
+  s->rest.how = (void *)(s->rest.same + plan->objects.n);
+  for (size_t t = 0; t < threads; t++, doubles += own) {
     s->worker[t].patch = doubles;
-    s->worker[t].rows = doubles + r->patch;
-    s->parts[t] = s->worker[t].rows + r->rows;
-    s->worker[t].tally = (msri_tally){.timed = timed, .clock = clock};
+    s->worker[t].rows = doubles + s->deal.patch;
+    s->parts[t] = s->worker[t].rows + s->deal.rows;
+    s->worker[t].tally = (msri_tally){.timed = plan->timed, .clock = clock};
   }
 }
 
@@ -202,26 +99,26 @@ static int besides_of(const msr_plan *plan) {
 }
 
 msr_status msri_sweep_create(const msr_plan *plan, msri_sweep **sweep, msr_error *err) {
-  const room r = room_for(plan);
-  msri_sweep *made = msri_alloc(1, bytes_of(plan, &r), "a state", err);
+  const msri_deal deal = msri_deal_of(plan);
+  msri_sweep *made = msri_alloc(1, bytes_of(plan, &deal), "a state", err);
   if (!made) return MSR_ENOMEM;
-  made->threads = threads_for(plan, &r);
-  made->depth = r.depth;
-  made->alone = plan->objects.n <= made->threads;
+  made->deal = deal;
+  made->alone = plan->objects.n <= deal.threads;
   const msri_lattice_kernel *kernel = msri_lattice_widest();
   made->pass =
       (msri_pass){.plan = plan,
                   .loops = msri_has_diagonals(plan->neighbours) ? &kernel->eight : &kernel->four,
                   .fastest = kernel->fastest,
                   .stage = made->stage,
-                  .ways = ways_of(plan),
+                  .ways = msri_deal_ways(plan),
                   .besides = besides_of(plan),
                   .meets = msri_plan_meets(plan)};
-  place(made, &r, plan->timed);
-  made->rests = msri_rest_is_known(plan) &&
-                msri_course_stages(&(msri_course){.plan = plan, .steps = 1}) <= (uint64_t)r.depth;
+  place(made, plan);
+  made->rests =
+      msri_rest_is_known(plan) &&
+      msri_course_stages(&(msri_course){.plan = plan, .steps = 1}) <= (uint64_t)deal.depth;
   const msr_status status =
-      made->threads > 1 ? msri_team_create(made->threads, &made->team, err) : MSR_OK;
+      deal.threads > 1 ? msri_team_create(deal.threads, &made->team, err) : MSR_OK;
   if (status == MSR_OK)
     *sweep = made;
   else
@@ -259,7 +156,7 @@ static void share_out(const msri_sweep *s, size_t rows, size_t parts, size_t *be
 
 static double run_large(msri_sweep *s, const msri_object *object, unsigned thread, unsigned owner,
                         unsigned *turn) {
-  const unsigned parts = parts_of(s->pass.plan, object, s->depth);
+  const unsigned parts = msri_deal_parts(s->pass.plan, object, s->deal.depth);
   msri_tally *tally = &s->worker[thread].tally;
   size_t begin[MSRI_MOST_THREADS + 1];
   msri_part part = {.parts = parts, .begin = begin, .opened = s->opened, .memory = s->parts};
@@ -280,15 +177,15 @@ static double run_large(msri_sweep *s, const msri_object *object, unsigned threa
 static double look_at(msri_sweep *s, size_t n, unsigned thread) {
   const msri_object *object = &s->pass.plan->objects.object[n];
   const msri_group alone = msri_group_of(object, 1);
-  const bool small = is_small(s->pass.plan, object);
+  const bool small = msri_deal_is_small(s->pass.plan, object);
   worker *me = &s->worker[thread];
   const uint64_t met = me->tally.met;
   const size_t begin[] = {0, object->rows};
   bool *same = &s->rest.same[n];
   msri_part all = {.parts = 1, .begin = begin, .memory = &me->rows, .same = same};
   double fastest;
-  if (thread != (small ? owner_of(s, n) : 0)) return 0;
-  if (parts_of(s->pass.plan, object, s->depth) > 1) all.memory = s->parts;
+  if (thread != (small ? msri_deal_owner(&s->deal, n) : 0)) return 0;
+  if (msri_deal_parts(s->pass.plan, object, s->deal.depth) > 1) all.memory = s->parts;
   if (small)
     fastest = msri_patch_run(&s->pass, &alone, false, false, me->patch, &me->tally, same);
   else
@@ -299,7 +196,7 @@ static double look_at(msri_sweep *s, size_t n, unsigned thread) {
 
 /* A thread's part of the mesh. */
 static double run_mesh(msri_sweep *s, unsigned thread, unsigned *turn) {
-  const size_t bands = s->pass.plan->bands.n, parts = s->threads;
+  const size_t bands = s->pass.plan->bands.n, parts = s->deal.threads;
   size_t begin[MSRI_MOST_THREADS + 1];
   share_out(s, bands, parts, begin);
   const msri_part part = {.number = thread,
@@ -314,9 +211,9 @@ static double run_mesh(msri_sweep *s, unsigned thread, unsigned *turn) {
 /* Small objects from the n-th on that are a thread's and are stepped as usual; maybe none. */
 static msri_group group_at(const msri_sweep *s, size_t n, unsigned thread) {
   const msr_plan *plan = s->pass.plan;
-  const size_t first = n, last = msri_lesser(plan->objects.n, n + share_of(plan, s->threads));
-  while (n < last && s->rest.how[n] == MSRI_STEPPED && owner_of(s, n) == thread &&
-         is_small(plan, &plan->objects.object[n]))
+  const size_t first = n, last = msri_lesser(plan->objects.n, n + s->deal.share);
+  while (n < last && s->rest.how[n] == MSRI_STEPPED && msri_deal_owner(&s->deal, n) == thread &&
+         msri_deal_is_small(plan, &plan->objects.object[n]))
     n++;
   return msri_group_of(&plan->objects.object[first], n - first);
 }
@@ -330,8 +227,8 @@ static double run_group(msri_sweep *s, const msri_group *group, unsigned thread)
 static double run_other(msri_sweep *s, size_t n, unsigned thread, unsigned *turn) {
   const msri_object *object = &s->pass.plan->objects.object[n];
   if (s->rest.how[n] == MSRI_LOOKED_AT) return look_at(s, n, thread);
-  if (s->rest.how[n] == MSRI_LEFT_OUT || is_small(s->pass.plan, object)) return 0;
-  return run_large(s, object, thread, owner_of(s, n), turn);
+  if (s->rest.how[n] == MSRI_LEFT_OUT || msri_deal_is_small(s->pass.plan, object)) return 0;
+  return run_large(s, object, thread, msri_deal_owner(&s->deal, n), turn);
 }
 
 static void work(void *self, unsigned thread) {
@@ -350,7 +247,7 @@ static void work(void *self, unsigned thread) {
         group.n > 0 ? run_group(s, &group, thread) : run_other(s, n, thread, &turn);
     me->fastest = msri_worse(fastest, me->fastest);
   }
-  if (has_bands(s->pass.plan)) me->fastest = run_mesh(s, thread, &turn);
+  if (s->pass.plan->bands.n > 0) me->fastest = run_mesh(s, thread, &turn);
   me->turn = turn;
 }
 
@@ -361,7 +258,7 @@ static double run_pass(msri_sweep *s, uint64_t *met) {
     msri_team_run(s->team, work, s);
   else
     work(s, 0);
-  for (unsigned t = 0; t < s->threads; t++) {
+  for (unsigned t = 0; t < s->deal.threads; t++) {
     fastest = msri_worse(s->worker[t].fastest, fastest);
     *met += s->worker[t].tally.met;
   }
@@ -374,7 +271,7 @@ static double run_pass(msri_sweep *s, uint64_t *met) {
 static void set_stages(msri_sweep *s, const msri_course *course, uint64_t k, uint64_t end,
                        msri_progress *p) {
   const uint64_t look = k + MSRI_SPEEDS - k % MSRI_SPEEDS, left = (look < end ? look : end) - k;
-  const uint64_t passes = (left + (uint64_t)s->depth - 1) / (uint64_t)s->depth;
+  const uint64_t passes = (left + (uint64_t)s->deal.depth - 1) / (uint64_t)s->deal.depth;
   const int most = (int)((left + passes - 1) / passes);
   int n = 0;
   for (; n < most; n++) {
@@ -419,7 +316,7 @@ static void run_course(msri_sweep *s, msri_course *course, double fastest, msri_
 /* The step that objects were looked at in is done. */
 static void end_look(msri_sweep *s) {
   uint64_t met = 0;
-  for (unsigned t = 0; t < s->threads; t++) met += s->worker[t].stays;
+  for (unsigned t = 0; t < s->deal.threads; t++) met += s->worker[t].stays;
   msri_rest_leave_out(s->pass.plan, met, &s->rest);
 }
 
@@ -428,7 +325,7 @@ msri_progress msri_sweep_run(msri_sweep *s, const msri_swept *state, msri_course
                              double fastest, bool known) {
   msri_progress progress = {.known = known};
   const uint64_t drifts = (uint64_t)msri_splitting_drifts(course.plan->figures.integrator);
-  const uint64_t most = s->pass.meets ? ((uint64_t)s->depth - 1) / drifts : course.steps;
+  const uint64_t most = s->pass.meets ? ((uint64_t)s->deal.depth - 1) / drifts : course.steps;
   const uint64_t substeps = course.plan->figures.substeps;
   s->pass.state = state;
   bool looks = s->rests && msri_rest_look(course.plan, state, &s->rest);
@@ -448,7 +345,7 @@ msri_progress msri_sweep_run(msri_sweep *s, const msri_swept *state, msri_course
 
 void msri_sweep_split(msri_sweep *s, double spent, double *seconds) {
   double kicks = 0, drifts = 0;
-  for (unsigned t = 0; t < s->threads; t++) {
+  for (unsigned t = 0; t < s->deal.threads; t++) {
     kicks += s->worker[t].tally.kicks.all;
     drifts += s->worker[t].tally.drifts.all;
   }
