@@ -641,7 +641,7 @@ typedef struct msr_plan_figures {
   msr_impacts impacts;
   unsigned threads; /* that a state steps with: of those asked for no more than there are processors
                      * for the process, nor than have an object of their own to step or a part of a
-                     * large one */
+                     * large one; one that may meet a support has one part */
   const char *by_vectors; /* why states step vectors of all masses, one effect after the other, by
                            * one thread; NULL: they step row by row, several steps at a time, as
                            * methods that split do past a picture's objects or a program's equal
@@ -754,16 +754,16 @@ MSR_API uint64_t msr_state_iteration(const msr_state *state);
 /* Advances to `iterations` of DT from here. Methods that split take an evaluation of the forces
  * more in each call where they step row by row (see figures.by_vectors), unless a step ends
  * in a drift: a call is better of many iterations than of one. So they do after each look at all
- * energies, and past supports after 31 steps, or fewer of wide objects. The guard looks at speeds
- * every 16 steps, row by row every 64 of their stages, and at all energies every 256: MSR_EUNSTABLE
- * names the mass, its longest spring, the time and a step that is stable. With figures.care, x, y,
- * vx, vy are kept every 64 iterations (128 of two steps, 256 of one); once 2 % of what the scene
- * had to give came from nowhere, or was lost where nothing takes any, or the guard refuses the
- * state, it goes back to what was kept, and comes here by steps of that method, over four substeps
- * at most, or less where equations can't be solved. They keep the energy and cost tens of times
- * more; what is crushed at the start begins so. Bits don't depend on how steps are grouped.
- * MSR_ENOMEM if there is no memory for such steps: the state may be stepped again. Or what a force
- * returns. */
+ * energies, and past supports after 63 steps, or fewer of wide objects. The guard looks at speeds
+ * every 16 steps, row by row every 64 drifts, past supports at each, and at all energies every 256
+ * steps: MSR_EUNSTABLE names the mass, its longest spring, the time and a step that is stable. With
+ * figures.care, x, y, vx, vy are kept every 64 iterations (128 of two steps, 256 of one); once 2 %
+ * of what the scene had to give came from nowhere, or was lost where nothing takes any, or the
+ * guard refuses the state, it goes back to what was kept, and comes here by steps of that method,
+ * over four substeps at most, or less where equations can't be solved. They keep the energy and
+ * cost tens of times more; what is crushed at the start begins so. Bits don't depend on how steps
+ * are grouped. MSR_ENOMEM if there is no memory for such steps: the state may be stepped again. Or
+ * what a force returns. */
 MSR_API msr_status msr_state_step(msr_state *state, uint64_t iterations, msr_error *err);
 
 /* The guard: what a driving force returns, or MSR_EUNSTABLE if a number or an energy isn't finite

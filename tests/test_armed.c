@@ -157,7 +157,6 @@ static void ranges_drift_as_masses_do(void **unused) {
   assert_true(met > 1000);
 }
 
-/* From just before the first edge it's 1 to the second, but for rounding. */
 /* Blocks of any length, by vectors of each width, and mass by mass. */
 static void widths_do_the_same(void **unused) {
   (void)unused;
@@ -190,6 +189,7 @@ static void widths_do_the_same(void **unused) {
   msr_picture_free(p);
 }
 
+/* From just before the first edge it's 1 to the second, but for rounding. */
 static void rounding_leads_into_no_support(void **unused) {
   (void)unused;
   msr_picture *p = paint("..#\n");

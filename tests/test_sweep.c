@@ -134,7 +134,7 @@ static void shapes_have_the_same_bits(void **state) {
 
 /* ---- Each way to go through an object: see libmsr/sweep/sweep.c */
 
-/* One thread has patches of up to 12288 cells; rows in place where they are whole; else a ring.
+/* One thread has patches of up to 12288 cells; rows of larger ones are in a ring.
  * More threads share what has 8192 masses if there are few objects, and rows enough. */
 static void large_objects_have_the_same_bits(void **state) {
   (void)state;

@@ -102,7 +102,7 @@ static void small_objects_bounce_as_by_whole_vectors(void **unused) {
   }
 }
 
-/* Too large for a patch: in place, and with holes in the ring. */
+/* Too large for a patch: whole, and with holes. */
 static void large_objects_bounce_as_by_whole_vectors(void **unused) {
   (void)unused;
   for (int holes = 0; holes <= 10; holes += 10) {

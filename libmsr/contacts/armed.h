@@ -70,19 +70,19 @@ typedef struct msri_armed_rows {
   msri_armed_block *block;
 } msri_armed_rows;
 
-/* A step in which none of a row goes further than `way`: may one have come to a support? */
-static inline bool msri_armed_row_goes(msri_armed_row *row, double way) {
+/* A step in which none of a row goes further than `path`: may one have come to a support? */
+static inline bool msri_armed_row_goes(msri_armed_row *row, double path) {
   row->steps++;
-  row->gone += way + MSRI_ARMED_ROUNDING;
+  row->gone += path + MSRI_ARMED_ROUNDING;
   return !(row->gone <= row->until);
 }
 
-/* Some masses of the row have been looked at in a step of `way`, after which that is their
+/* Some masses of the row have been looked at in a step of `path`, after which that is their
  * clearance. */
 static inline void msri_armed_block_earn(msri_armed_block *block, const msri_armed_row *row,
-                                         double way, double clearance) {
+                                         double path, double clearance) {
   enum { FEW = 4, REST = 15 };
-  if (clearance > FEW * way)
+  if (clearance > FEW * path)
     block->until = row->gone + clearance;
   else
     block->asks = row->steps + REST;

@@ -46,7 +46,7 @@ typedef struct msri_contact {
    * as that is nothing for one of them. NULL: unknown. */
   double (*clearance)(const void *self, size_t n, const double *x, const double *y);
   /* As drift for n masses and a step that went from (q0, v0) to (q, v) as if nothing were in the
-   * path; v is the velocity at the end, and has no half kick to come. */
+   * way; v is the velocity at the end, and has no half kick to come. */
   uint64_t (*bounce)(const void *self, size_t n, double h, const double *q0, const double *v0,
                      double *q, double *v, msri_debts *debts);
   /* As hold of msr_system: marks what would be stopped between q0 and q; tells whether it did.

@@ -28,13 +28,13 @@ static inline bool msri_drift_meets(msri_drift *d, size_t i, size_t j) {
 
 /* Does anything meet, or overlap? Bodies of which masses do become hot. Lists are good for the
  * paths. */
-bool msri_encounters_are_hot(const msri_encounters *course);
+bool msri_encounters_are_hot(const msri_encounters *c);
 
 /* Lists the pairs that are so close that pushes in this drift may reach from one to the other;
  * false: they are too many. */
-bool msri_encounters_list_close(msri_encounters *course);
+bool msri_encounters_list_close(msri_encounters *c);
 
 /* Lists the pairs that meet as they go so far, on paths of any length. Are there any? */
-bool msri_encounters_list_meeting(msri_encounters *course);
+bool msri_encounters_list_meeting(msri_encounters *c);
 
 #endif

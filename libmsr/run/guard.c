@@ -9,9 +9,9 @@
  * start (a mass that rests on a support is kicked and reflected for ever), and rounding.
  *
  * All energies cost up to a third of a step: they are looked at every 256 steps, and whenever a
- * glance at the speeds, every 16 steps, sees more kinetic energy than there may be. So what
- * explodes slowly is told before it can be seen, and what does so at once while there still are
- * numbers.
+ * glance at the speeds, every 16 steps (row by row see MSRI_SPEEDS), sees more kinetic energy than
+ * there may be. So what explodes slowly is told before it can be seen, and what does so at once
+ * while there still are numbers.
  *
  * Near the limit of stability, with s = h omega / 2 near 1, the energy of the method itself swings:
  * by 1 / (1 - s^2) with Verlet, by (1 + s) / (1 - s) with symplectic Euler, at most 4 / (1 - s^2),

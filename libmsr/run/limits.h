@@ -9,8 +9,9 @@ typedef struct msri_start {
   const msr_plan *plan;
   msr_view view;  /* x, y, vx and vy NULL: nothing depends on them */
   size_t side[2]; /* of a full rectangle of 4 neighbours, which is all there is; 0: it isn't */
-  bool vast; /* more masses than matrices are analysed of: nothing is made that has their number */
-  double other2;         /* bound of omega^2 of all forces but springs [1/s^2] */
+  bool vast;      /* more masses than matrices are analysed of: nothing is made that has their
+                   * number, unless a force asks where masses begin (msr_force.ignores_start) */
+  double other2;  /* bound of omega^2 of all forces but springs [1/s^2] */
   double flow, midpoint; /* bounds of the rates of damping of forces that have a flow, and of those
                           * that methods that split take an explicit midpoint step of [1/s] */
 } msri_start;

@@ -159,7 +159,7 @@ static msr_status sweep(msr_state *state, uint64_t end, const msri_poll *poll, b
   const size_t n = state->plan->figures.masses;
   const double most = sqrt(2 * state->guard.most / state->plan->uniform_mass);
   msri_still still = {0};
-  const msri_swept swept = {state->q,       state->q + n,       state->v,     state->v + n,
+  const msri_swept swept = {state->q,       state->q + n,       state->v,    state->v + n,
                             state->scratch, state->meter.calls, state->rows, &still};
   const msri_course ahead = {state->plan, state->iteration, state->substep,
                              steps_to(state, end, poll)};

@@ -124,7 +124,6 @@ static unsigned eight(const uint8_t *bits, size_t bit) {
 
 void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
                     const msri_marks *above, const msri_marks *below) {
-  static const int to[] = {[MSRI_BELOW_LEFT] = -1, [MSRI_BELOW_RIGHT] = 1};
   size_t n = 0;
   for (size_t c = 0; c < f->n; c += MSRI_LANES) {
     const size_t at = masses->first + c, up = above->first + c, down = below->first + c;
@@ -135,8 +134,8 @@ void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
     b->mass = (uint8_t)mass;
     b->tie[MSRI_RIGHT] = (uint8_t)(mass & eight(masses->bits, at + 1));
     for (int way = MSRI_BELOW; way < ways; way++) {
-      b->tie[way] = (uint8_t)(mass & eight(below->bits, down + (size_t)to[way]));
-      b->tied[way] = (uint8_t)(mass & eight(above->bits, up - (size_t)to[way]));
+      b->tie[way] = (uint8_t)(mass & eight(below->bits, down + (size_t)msri_field_shift(way)));
+      b->tied[way] = (uint8_t)(mass & eight(above->bits, up - (size_t)msri_field_shift(way)));
     }
   }
   *f->blocks = n;

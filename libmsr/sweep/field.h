@@ -52,8 +52,8 @@ typedef struct msri_marks {
   size_t first; /* a multiple of 8 but for cells above and below others */
 } msri_marks;
 
-/* Bytes of the marks of n cells and `around` on each side; a multiple of 8 and more than there are
- * to be read. */
+/* Bytes of the marks of n cells and of `around` on each side, a multiple of 8, with some more that
+ * may be read. */
 size_t msri_marks_bytes(size_t n, size_t around);
 
 /* Marks the masses of a row, at cells `at` + column. */
@@ -62,6 +62,11 @@ void msri_marks_set(const msri_marks *marks, const msri_objects *objects, size_t
 /* Finds the blocks of a field, by the marks of its cells and of those above and below them. */
 void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
                     const msri_marks *above, const msri_marks *below);
+
+/* From a cell, columns to where a spring to below ends. */
+static inline ptrdiff_t msri_field_shift(int way) {
+  return way == MSRI_BELOW_LEFT ? -1 : way == MSRI_BELOW_RIGHT ? 1 : 0;
+}
 
 /* The cells of a field, without those below them and what they pull. */
 msri_cells msri_field_cells(const msri_field *f);

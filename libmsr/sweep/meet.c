@@ -75,14 +75,14 @@ static void stop(const msri_pass *pass, double h, const msri_cells *cells, size_
 }
 
 /* A block of a row that is armed. */
-static void stop_armed(const msri_pass *pass, double h, double way, const msri_cells *cells,
+static void stop_armed(const msri_pass *pass, double h, double path, const msri_cells *cells,
                        size_t c, size_t n, const msri_armed_row *row, msri_armed_block *block,
                        msri_meet *meet) {
   const msri_contact *contact = &pass->plan->contact;
   if (row->gone <= block->until) return;
   stop(pass, h, cells, c, n, meet);
   if (row->steps < block->asks) return;
-  msri_armed_block_earn(block, row, way,
+  msri_armed_block_earn(block, row, path,
                         contact->clearance(contact->self, n, cells->x + c, cells->y + c));
 }
 
@@ -98,11 +98,11 @@ static void forget(const msri_pass *pass, size_t row) {
 
 void msri_meet_stop(const msri_pass *pass, const msri_stage *stage, size_t row, double fastest,
                     const msri_cells *cells, size_t base, msri_meet *meet) {
-  const double h = stage->motion.drift, way = fabs(h) * fastest;
+  const double h = stage->motion.drift, path = fabs(h) * fastest;
   const msri_objects *o = &pass->plan->objects;
   const bool arms = pass->plan->contact.clearance;
   msri_armed_row *armed = arms ? &pass->state->armed.row[row] : NULL;
-  if (arms && !msri_armed_row_goes(armed, way)) return;
+  if (arms && !msri_armed_row_goes(armed, path)) return;
   double until = (double)INFINITY;
   for (size_t p = o->row[row]; p < o->row[row + 1]; p++) {
     const msri_piece *piece = &o->piece[p];
@@ -114,7 +114,7 @@ void msri_meet_stop(const msri_pass *pass, const msri_stage *stage, size_t row, 
         stop(pass, h, cells, c, n, meet);
         continue;
       }
-      stop_armed(pass, h, way, cells, c, n, armed, block, meet);
+      stop_armed(pass, h, path, cells, c, n, armed, block, meet);
       until = msri_min(until, block->until);
     }
   }

@@ -131,14 +131,13 @@ static bool is_unchanged(const msri_pass *pass, const msri_group *group, const m
 }
 
 static msri_cells cells_of(const msri_pass *pass, const msri_group *group, const place *p) {
-  static const ptrdiff_t shift[MSRI_WAYS] = {[MSRI_BELOW_LEFT] = 1, [MSRI_BELOW_RIGHT] = -1};
   const size_t row = length(group);
   msri_cells cells = msri_field_cells(&p->field);
   double *pulls = p->rest + around(group);
   cells.below_x = cells.x + row, cells.below_y = cells.y + row;
   for (int way = MSRI_BELOW; way < pass->ways; way++, pulls += 2 * stride(group)) {
     cells.pull[way] = (msri_pull){pulls, pulls + stride(group)};
-    cells.back[way] = shift[way] - (ptrdiff_t)row;
+    cells.back[way] = -msri_field_shift(way) - (ptrdiff_t)row;
   }
   return cells;
 }

@@ -138,11 +138,10 @@ static double *pull_at(const wave *w, int stage, size_t row, int way) {
 }
 
 static void point_at_pulls(const wave *w, int stage, size_t row, msri_cells *cells) {
-  static const ptrdiff_t shift[MSRI_WAYS] = {[MSRI_BELOW_LEFT] = 1, [MSRI_BELOW_RIGHT] = -1};
   for (int way = MSRI_BELOW; way < w->pass->ways; way++) {
     double *above = pull_at(w, stage, row + 1, way), *below = pull_at(w, stage, row, way);
     cells->pull[way] = (msri_pull){below, below + w->wide};
-    cells->back[way] = above - below + shift[way];
+    cells->back[way] = above - below - msri_field_shift(way);
   }
 }
 

@@ -349,6 +349,6 @@ void msri_sweep_split(msri_sweep *s, double spent, double *seconds) {
     kicks += s->worker[t].tally.kicks.all;
     drifts += s->worker[t].tally.drifts.all;
   }
-  s->shares.drifts = drifts > 0 ? drifts / kicks : 0;
+  s->shares.drifts = kicks > 0 ? drifts / kicks : 0;
   msri_shares_split(&s->shares, s->pass.plan, spent, seconds);
 }
