@@ -12,9 +12,7 @@ void steps_print(FILE *out, const settings *s, const msr_plan *plan) {
   if (f.by_vectors) {
     fprintf(out, ", by whole vectors: %s\n", f.by_vectors);
   } else if (s->threads > f.threads) {
-    fputs(", row by row: there are no more processors, objects or parts of one (past supports it "
-          "is whole)\n",
-          out);
+    fputs(", row by row: there are no more processors, objects or parts of one\n", out);
   } else {
     fputs(", row by row\n", out);
   }

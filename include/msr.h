@@ -641,7 +641,7 @@ typedef struct msr_plan_figures {
   msr_impacts impacts;
   unsigned threads; /* that a state steps with: of those asked for no more than there are processors
                      * for the process, nor than have an object of their own to step or a part of a
-                     * large one; one that may meet a support has one part */
+                     * large one */
   const char *by_vectors; /* why states step vectors of all masses, one effect after the other, by
                            * one thread; NULL: they step row by row, several steps at a time, as
                            * methods that split do past a picture's objects or a program's equal

@@ -13,6 +13,7 @@ typedef struct trial {
   msr_impacts impacts;
   const msr_integrator *integrator;
   uint64_t seed;
+  bool walls; /* beside the object, a pixel away */
 } trial;
 
 enum { AROUND = 8, STEPS = 150 };
@@ -31,7 +32,8 @@ static msr_scene *scene_by(const trial *t) {
       const bool object =
           r >= AROUND && r < AROUND + t->height && c >= AROUND && c < AROUND + t->width;
       const bool peg = r > AROUND + t->height + 1 && c % 7 == 3;
-      if (peg || r + 2 == height) memcpy(rgb, rgb_of('#'), 3);
+      const bool wall = t->walls && (c + 2 == AROUND || c == AROUND + t->width + 1);
+      if (peg || wall || r + 2 == height) memcpy(rgb, rgb_of('#'), 3);
       if (object && random_below(&dice, 100) >= (uint64_t)t->holes) memcpy(rgb, rgb_of('o'), 3);
     }
   msr_scene *scene = scene_from(picture, &conf, &(msr_scene_options){.neighbours = t->neighbours});
@@ -114,10 +116,24 @@ static void large_objects_bounce_as_by_whole_vectors(void **unused) {
   }
 }
 
+/* All rows hit a wall at the same time, so that whatever one part leaves to another is owed
+ * something. */
+static void what_is_owed_goes_from_part_to_part(void **unused) {
+  (void)unused;
+  for (unsigned threads = 2; threads <= 3; threads++) {
+    trial t = trial_of(4);
+    t.width = 60, t.height = 210, t.walls = true, t.speed = 100;
+    try(&t, STEPS, threads);
+    t.impacts = MSR_IMPACTS_LOCATED, t.neighbours = 4, t.holes = 10;
+    try(&t, 47, threads);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(small_objects_bounce_as_by_whole_vectors),
       cmocka_unit_test(large_objects_bounce_as_by_whole_vectors),
+      cmocka_unit_test(what_is_owed_goes_from_part_to_part),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -24,21 +24,21 @@ bool msri_deal_is_small(const msr_plan *plan, const msri_object *object) {
   const size_t cells = msri_patch_cells(&alone);
   const bool dense = cells <= PATCH_CELLS && 4 * object->masses >= object->rows * object->width;
   const bool many = plan->objects.n >= 4 * (size_t)plan->threads;
-  const bool shared = plan->threads > 1 && !many && !msri_plan_meets(plan);
+  const bool shared = plan->threads > 1 && !many;
   return dense && (!shared || object->masses < SHARED_MASSES);
 }
 
 /* With fewer rows than twice the stages they'd be all wedge. */
 unsigned msri_deal_parts(const msr_plan *plan, const msri_object *object, int depth) {
   const size_t most = object->rows / (2 * (size_t)depth);
-  if (object->masses < SHARED_MASSES || most < 2 || msri_plan_meets(plan)) return 1;
+  if (object->masses < SHARED_MASSES || most < 2) return 1;
   return most < plan->threads ? (unsigned)most : plan->threads;
 }
 
 static int depth_for(const msr_plan *plan, const msri_object *object, int ways) {
   const int stages = msri_rows_stages(ways, object->width);
   const size_t shared = object->rows / (2 * (size_t)plan->threads);
-  if (plan->threads == 1 || msri_plan_meets(plan) || shared >= (size_t)stages) return stages;
+  if (plan->threads == 1 || shared >= (size_t)stages) return stages;
   return shared > LEAST_STAGES ? (int)shared : stages < LEAST_STAGES ? stages : LEAST_STAGES;
 }
 
@@ -80,11 +80,12 @@ static void widen(size_t *size, size_t least) {
 static void widen_for(const msr_plan *plan, const msri_object *object, int ways, msri_deal *d) {
   const bool meets = msri_plan_meets(plan);
   const msri_group alone = msri_group_of(object, 1);
+  const bool shared = msri_deal_parts(plan, object, d->depth) > 1;
   if (msri_deal_is_small(plan, object))
     widen(&d->patch, msri_patch_size(ways, meets, &alone));
   else
-    widen(msri_deal_parts(plan, object, d->depth) > 1 ? &d->parts : &d->rows,
-          msri_rows_size(ways, meets, object->width, d->depth));
+    widen(shared ? &d->parts : &d->rows,
+          msri_rows_size(ways, meets, shared, object->width, d->depth));
 }
 
 /* A mesh's parts are bands. */

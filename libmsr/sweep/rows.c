@@ -72,10 +72,18 @@ static size_t ring_size(size_t width, int stages) {
   return slots(stages) * msri_field_size(cells(width), MSRI_MARGIN);
 }
 
-/* The edge comes first: others look there. */
-size_t msri_rows_size(int ways, bool meets, size_t width, int stages) {
+/* Of a row: how many debts, and these. */
+static size_t owed_to_row(size_t width) {
+  return MSRI_MARGIN + wide(width) * sizeof(msri_debt) / sizeof(double);
+}
+
+static size_t owed_size(size_t width, int stages) { return (size_t)stages * owed_to_row(width); }
+
+/* The edge, then what is owed, come first: others look there. */
+size_t msri_rows_size(int ways, bool meets, bool shared, size_t width, int stages) {
   return (meets ? meet_size(width, stages) : 0) + edge_size(width, stages) +
-         pulls_size(ways, width, stages) + marks_size(width) + ring_size(width, stages);
+         (meets && shared ? owed_size(width, stages) : 0) + pulls_size(ways, width, stages) +
+         marks_size(width) + ring_size(width, stages);
 }
 
 int msri_rows_stages(int ways, size_t width) {
@@ -108,12 +116,36 @@ static void fill(wave *w, size_t row, const msri_field *f) {
   msri_field_tie(f, w->pass->ways, marks_of(w, row), above, below);
 }
 
+/* The debts of a row that a part left to the one above before some stage. */
+typedef struct owed {
+  size_t *n;
+  msri_debt *debt;
+} owed;
+
+static owed owed_before(const wave *w, double *memory, int stage) {
+  double *at = memory + edge_size(w->object->width, w->pass->stages) +
+               (size_t)stage * owed_to_row(w->object->width);
+  return (owed){(void *)at, (void *)(at + MSRI_MARGIN)};
+}
+
+/* Rows from the end on were left to this part by the one below. */
+static void take_over(const wave *w, size_t row, msri_debts *debts) {
+  const msri_part *part = w->part;
+  const size_t end = part->begin[part->number + 1];
+  debts->n = 0;
+  if (part->number + 1 == part->parts || row < end) return;
+  const owed from = owed_before(w, part->memory[part->number + 1], (int)(row - end) + 1);
+  debts->n = *from.n;
+  memcpy(debts->debt, from.debt, debts->n * sizeof *debts->debt);
+}
+
 static slot *open_row(wave *w, size_t row) {
   slot *s = &w->slot[place_of(w, row)];
   if (s->row == row) return s;
   s->row = row;
   fill(w, row, &s->at);
   s->cells = msri_field_cells(&s->at);
+  if (w->pass->meets) take_over(w, row, &s->meet.debts);
   return s;
 }
 
@@ -209,8 +241,19 @@ static void pull_below(wave *w, int stage, size_t row) {
   w->pass->loops->pull(cells, &w->pass->stage[stage].motion);
 }
 
-/* Before a stage of a part but the first begins: the forces from the row above, which stays behind;
- * and where its first row is now, for the part above. */
+/* The row above the first one stays behind. */
+static void leave_row(wave *w, int stage, size_t row) {
+  const msri_debts *debts = &w->slot[place_of(w, row)].meet.debts;
+  if (w->pass->meets && stage > 0) {
+    const owed to = owed_before(w, w->edge, stage);
+    *to.n = debts->n;
+    memcpy(to.debt, debts->debt, debts->n * sizeof *debts->debt);
+  }
+  close_row(w, row, stage > 0);
+}
+
+/* Before a stage of a part but the first begins: the forces from the row above; and where its first
+ * row is now, for the part above. */
 static void begin_stage(wave *w, int stage) {
   const size_t row = first_row(w, stage), n = w->object->width;
   if (w->part->number == 0) return;
@@ -219,7 +262,7 @@ static void begin_stage(wave *w, int stage) {
   memcpy(x, f->x, n * sizeof *x);
   memcpy(y, f->y, n * sizeof *y);
   if (w->pass->stage[stage].forces) pull_below(w, stage, row - 1);
-  close_row(w, row - 1, stage > 0);
+  leave_row(w, stage, row - 1);
   if (stage + 1 == w->pass->stages)
     atomic_store_explicit(&w->part->opened[w->part->number], w->part->turn, memory_order_release);
 }
@@ -260,8 +303,8 @@ static void place_slots(wave *w, double *memory, msri_tally *tally) {
     s->row = none;
     s->at = msri_field_place(n, MSRI_MARGIN, w->ring + k * size);
     if (!w->pass->meets) continue;
-    double *owed = memory + (MSRI_MEET_TRACE + k * MSRI_MEET_DEBT) * w->wide;
-    s->meet = msri_meet_place(0, w->wide, owed, tally);
+    double *meeting = memory + (MSRI_MEET_TRACE + k * MSRI_MEET_DEBT) * w->wide;
+    s->meet = msri_meet_place(0, w->wide, meeting, tally);
     s->meet.trace = msri_meet_trace(w->wide, memory);
   }
 }
@@ -281,7 +324,8 @@ double msri_rows_run(const msri_pass *pass, const msri_object *object, const msr
   wave w = {.pass = pass, .object = object, .part = part, .wide = wide(width)};
   if (part->same) *part->same = true;
   w.edge = memory;
-  w.pulls = w.edge + edge_size(width, pass->stages);
+  const bool owes = pass->meets && part->parts > 1;
+  w.pulls = memory + edge_size(width, pass->stages) + (owes ? owed_size(width, pass->stages) : 0);
   w.ring = w.pulls + pulls_size(pass->ways, width, pass->stages);
   double *marks = w.ring + ring_size(width, pass->stages);
   place_marks(&w, marks);

@@ -11,7 +11,8 @@ enum { MSRI_MOST_STAGES = 64, MSRI_ROWS_STAGES = 32 };
 
 /* A part of an object's rows, for one thread. Stage s of part p goes over rows begin[p] + s up to
  * begin[p+1] + s: each part leaves a wedge to the one above, which finds there the rows as they
- * were at each stage and, beyond its end, in `edge`, where the next one's first row was. So parts
+ * were at each stage and, beyond its end, in `edge`, where the next one's first row was, and what
+ * masses are owed there. So parts
  * need wait for each other once a pass only. */
 typedef struct msri_part {
   size_t number, parts;
@@ -22,14 +23,15 @@ typedef struct msri_part {
   bool *same;               /* of the only part: has nothing changed, bit by bit? NULL: who cares */
 } msri_part;
 
-/* Doubles of memory for a part of an object of such width; `meets`: something may be in its way. */
-size_t msri_rows_size(int ways, bool meets, size_t width, int stages);
+/* Doubles of memory for a part of an object of such width; `meets`: something may be in its way;
+ * `shared`: it's one of several. */
+size_t msri_rows_size(int ways, bool meets, bool shared, size_t width, int stages);
 
 /* As many stages as keep rows in cache. */
 int msri_rows_stages(int ways, size_t width);
 
-/* Takes a part through all stages of a pass; an object that may meet something is one part. Returns
- * the largest speed along an axis, and counts collisions. */
+/* Takes a part through all stages of a pass. Returns the largest speed along an axis, and counts
+ * collisions. */
 double msri_rows_run(const msri_pass *pass, const msri_object *object, const msri_part *part,
                      msri_tally *tally);
 
