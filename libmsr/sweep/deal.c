@@ -7,10 +7,11 @@
 #include "sweep/rows.h"
 
 enum {
-  PATCH_CELLS = 12288,  /* of a small object: they fit into a core's cache */
-  SHARED_MASSES = 8192, /* of an object that is worth sharing among threads */
-  LEAST_STAGES = 4,     /* of a pass: fewer would have threads wait for each other too often */
-  MOST_SHARED = 32      /* small objects that are one thread's together */
+  PATCH_CELLS = 12288,            /* of a small object: they fit into a core's cache */
+  STRIP_CELLS = 16 * PATCH_CELLS, /* of one narrower than a vector: rows cost more than memory */
+  SHARED_MASSES = 8192,           /* of an object that is worth sharing among threads */
+  LEAST_STAGES = 4, /* of a pass: fewer would have threads wait for each other too often */
+  MOST_SHARED = 32  /* small objects that are one thread's together */
 };
 
 int msri_deal_ways(const msr_plan *plan) {
@@ -22,7 +23,8 @@ int msri_deal_ways(const msr_plan *plan) {
 bool msri_deal_is_small(const msr_plan *plan, const msri_object *object) {
   const msri_group alone = msri_group_of(object, 1);
   const size_t cells = msri_patch_cells(&alone);
-  const bool dense = cells <= PATCH_CELLS && 4 * object->masses >= object->rows * object->width;
+  const size_t most = object->width < MSRI_LANES ? STRIP_CELLS : PATCH_CELLS;
+  const bool dense = cells <= most && 4 * object->masses >= object->rows * object->width;
   const bool many = plan->objects.n >= 4 * (size_t)plan->threads;
   const bool shared = plan->threads > 1 && !many;
   return dense && (!shared || object->masses < SHARED_MASSES);
