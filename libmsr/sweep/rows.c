@@ -108,9 +108,15 @@ static const msri_marks *marks_of(wave *w, size_t row) {
 
 static size_t place_of(const wave *w, size_t row) { return row % slots(w->pass->stages); }
 
+static bool is_whole(const wave *w, size_t row) {
+  const msri_objects *o = &w->pass->plan->objects;
+  return o->piece[o->row[w->object->row + row]].count == w->object->width;
+}
+
 static void fill(wave *w, size_t row, const msri_field *f) {
+  const size_t from = is_whole(w, row) ? w->object->width : 0;
   double *const array[] = {f->x, f->y, f->vx, f->vy};
-  for (size_t n = 0; n < 4; n++) memset(array[n], 0, f->n * sizeof *array[n]);
+  for (size_t n = 0; n < 4; n++) memset(array[n] + from, 0, (f->n - from) * sizeof *array[n]);
   msri_field_fill(f, &w->pass->plan->objects, w->object->row + row, w->pass->state, 0);
   const msri_marks *above = marks_of(w, row - 1), *below = marks_of(w, row + 1);
   msri_field_tie(f, w->pass->ways, marks_of(w, row), above, below);

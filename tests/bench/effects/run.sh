@@ -57,8 +57,9 @@ out_air() {
   force wind
   edit '/for (int n = 0; n < 2 && (task->besides & MSRI_WITH_AIR); n++) {/,/^  }/d' \
     forces/lattice_kernel.inc
-  edit '/for (int n = 0; n < 2 && (pass->besides & MSRI_WITH_AIR); n++)/,+1d' sweep/meet.c
-  edit '/if (damped && at.n > 0) {/,/^  }/d; /^static void damp(/,/^}/d' sweep/stage.c
+  edit '/for (int n = 0; n < 2 && m->relaxes; n++)/,+1d' sweep/meet.c
+  edit '/if (still->damps) relax(/d; /^static void relax/,/^}/d' sweep/stage.c
+  edit '/const msri_motion \*m = &stage->motion;/d; s/const int air = .*/const int air = 0 * (stage == NULL);/' sweep/field.h
   edit 's/relax ? MSRI_WITH_AIR : 0/relax ? 0 : 0/' sweep/sweep.c
 }
 
@@ -69,7 +70,8 @@ out_supports() {
   edit 's/^struct msr_plan {/static const msri_contact none_in_the_way;\n&/' plan/plan.h
   edit 's/\(w->\|s->\|\b\)pass\(->\|\.\)meets/false/g' sweep/patch.c sweep/rows.c \
     sweep/shares.c
-  edit 's/msri_plan_meets(plan)/false/g' sweep/sweep.c
+  edit 's/msri_plan_meets(plan)/false/g' sweep/sweep.c sweep/deal.c
+  edit 's/msri_meet_trace(msri_patch_cells(&alone), trace)/(msri_trace){0}/' sweep/shares.c
   rm contacts/supports.c contacts/kept.c contacts/located.c sweep/meet.c
 }
 
@@ -115,7 +117,7 @@ C
 # the team of --threads
 out_threads() {
   edit '/if (s->team)$/,+2d; /msri_team_free(/d' sweep/sweep.c
-  edit 's/made->threads > 1 ? msri_team_create(.*) : MSR_OK/MSR_OK/' sweep/sweep.c
+  edit 's/deal.threads > 1 ? msri_team_create(.*) : MSR_OK/MSR_OK/' sweep/sweep.c
   edit 's/msri_team_wait(.*);/;/' sweep/sweep.c sweep/rows.c sweep/bands.c
   rm base/team.c
 }
