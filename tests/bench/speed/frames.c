@@ -159,16 +159,16 @@ static void print_spread(const double *seconds, bool a_second) {
 
 static void print_row(const char *name, place where, unsigned threads, size_t bytes,
                       const figures *f) {
-  const double part = share(f->bare, f->frames);
+  const double part = share(f->alone, f->frames);
   printf("%-22s%-7s%u", name, place_names[where], threads);
   print_spread(f->wall, true);
   print_spread(f->alone, false);
   print_spread(f->bare, false);
   print_spread(f->frames, false);
-  printf(" %5.2f %5.2f\n", share(f->alone, f->frames), part);
+  printf(" %5.2f %5.2f\n", part, share(f->bare, f->frames));
   if (bytes > 1000000)
-    bar_at_least(part, 0.6, "%s, %s, %u thread%s: bytes in a run / frames", name,
-                 place_names[where], threads, threads > 1 ? "s" : "");
+    bar_at_least(part, 0.6, "%s, %s, %u thread%s: bytes alone / frames", name, place_names[where],
+                 threads, threads > 1 ? "s" : "");
 }
 
 static void measure(const stage *s, place where, size_t bytes, int round, figures *f) {
