@@ -9,6 +9,11 @@
  * left, one to the right. Along a row all are in the order of their cells. */
 enum { MSRI_RIGHT, MSRI_BELOW, MSRI_BELOW_LEFT, MSRI_BELOW_RIGHT, MSRI_WAYS };
 
+/* From a cell, columns to where a spring to below ends. */
+static inline ptrdiff_t msri_lattice_shift(int way) {
+  return way == MSRI_BELOW_LEFT ? -1 : way == MSRI_BELOW_RIGHT ? 1 : 0;
+}
+
 /* Forces of springs to the cells below. */
 typedef struct msri_pull {
   double *x, *y;

@@ -56,6 +56,12 @@ MSRI_INLINE void copy(double *to, const double *from, size_t n) {
   }
 }
 
+void msri_field_clear(const msri_field *f, size_t from) {
+  double *const array[] = {f->x, f->y, f->vx, f->vy};
+  for (size_t n = 0; n < sizeof array / sizeof *array; n++)
+    memset(array[n] + from, 0, (f->n - from) * sizeof *array[n]);
+}
+
 void msri_field_fill(const msri_field *f, const msri_objects *objects, size_t row,
                      const msri_swept *from, size_t at) {
   for (size_t s = objects->row[row]; s < objects->row[row + 1]; s++) {
@@ -134,8 +140,8 @@ void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
     b->mass = (uint8_t)mass;
     b->tie[MSRI_RIGHT] = (uint8_t)(mass & eight(masses->bits, at + 1));
     for (int way = MSRI_BELOW; way < ways; way++) {
-      b->tie[way] = (uint8_t)(mass & eight(below->bits, down + (size_t)msri_field_shift(way)));
-      b->tied[way] = (uint8_t)(mass & eight(above->bits, up - (size_t)msri_field_shift(way)));
+      b->tie[way] = (uint8_t)(mass & eight(below->bits, down + (size_t)msri_lattice_shift(way)));
+      b->tied[way] = (uint8_t)(mass & eight(above->bits, up - (size_t)msri_lattice_shift(way)));
     }
   }
   *f->blocks = n;

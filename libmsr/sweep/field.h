@@ -33,6 +33,9 @@ typedef struct msri_field {
 size_t msri_field_size(size_t n, size_t around);
 msri_field msri_field_place(size_t n, size_t around, double *memory);
 
+/* 0 to all cells from one on. */
+void msri_field_clear(const msri_field *f, size_t from);
+
 /* Copies a row's masses to cells `at` + column, and back. */
 void msri_field_fill(const msri_field *f, const msri_objects *objects, size_t row,
                      const msri_swept *from, size_t at);
@@ -62,11 +65,6 @@ void msri_marks_set(const msri_marks *marks, const msri_objects *objects, size_t
 /* Finds the blocks of a field, by the marks of its cells and of those above and below them. */
 void msri_field_tie(const msri_field *f, int ways, const msri_marks *masses,
                     const msri_marks *above, const msri_marks *below);
-
-/* From a cell, columns to where a spring to below ends. */
-static inline ptrdiff_t msri_field_shift(int way) {
-  return way == MSRI_BELOW_LEFT ? -1 : way == MSRI_BELOW_RIGHT ? 1 : 0;
-}
 
 /* The cells of a field, without those below them and what they pull. */
 msri_cells msri_field_cells(const msri_field *f);

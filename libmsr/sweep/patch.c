@@ -116,8 +116,7 @@ static void fill(const msri_pass *pass, const msri_group *group, const place *p)
   const size_t row = length(group), cells = p->field.n;
   const msri_marks marks = {(void *)p->rest, around(group) + 8};
   const msri_marks above = {marks.bits, marks.first - row}, below = {marks.bits, marks.first + row};
-  double *const array[] = {p->field.x, p->field.y, p->field.vx, p->field.vy};
-  for (size_t n = 0; n < 4; n++) memset(array[n], 0, cells * sizeof *array[n]);
+  msri_field_clear(&p->field, 0);
   memset(marks.bits, 0, msri_marks_bytes(cells, around(group)));
   for (walk w = {.group = group}; is_on(&w); w.r++) {
     msri_field_fill(&p->field, objects, w.row, pass->state, w.at);
@@ -146,7 +145,7 @@ static msri_cells cells_of(const msri_pass *pass, const msri_group *group, const
   cells.below_x = cells.x + row, cells.below_y = cells.y + row;
   for (int way = MSRI_BELOW; way < pass->ways; way++, pulls += 2 * stride(group)) {
     cells.pull[way] = (msri_pull){pulls, pulls + stride(group)};
-    cells.back[way] = -msri_field_shift(way) - (ptrdiff_t)row;
+    cells.back[way] = -msri_lattice_shift(way) - (ptrdiff_t)row;
   }
   return cells;
 }

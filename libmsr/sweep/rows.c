@@ -114,9 +114,7 @@ static bool is_whole(const wave *w, size_t row) {
 }
 
 static void fill(wave *w, size_t row, const msri_field *f) {
-  const size_t from = is_whole(w, row) ? w->object->width : 0;
-  double *const array[] = {f->x, f->y, f->vx, f->vy};
-  for (size_t n = 0; n < 4; n++) memset(array[n] + from, 0, (f->n - from) * sizeof *array[n]);
+  msri_field_clear(f, is_whole(w, row) ? w->object->width : 0);
   msri_field_fill(f, &w->pass->plan->objects, w->object->row + row, w->pass->state, 0);
   const msri_marks *above = marks_of(w, row - 1), *below = marks_of(w, row + 1);
   msri_field_tie(f, w->pass->ways, marks_of(w, row), above, below);
@@ -179,7 +177,7 @@ static void point_at_pulls(const wave *w, int stage, size_t row, msri_cells *cel
   for (int way = MSRI_BELOW; way < w->pass->ways; way++) {
     double *above = pull_at(w, stage, row + 1, way), *below = pull_at(w, stage, row, way);
     cells->pull[way] = (msri_pull){below, below + w->wide};
-    cells->back[way] = above - below - msri_field_shift(way);
+    cells->back[way] = above - below - msri_lattice_shift(way);
   }
 }
 
