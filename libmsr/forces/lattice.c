@@ -19,6 +19,9 @@ typedef struct msri_task {
   msri_trace trace;
 } msri_task;
 
+/* Springs to 4 neighbours, the first of those BELOW, or to 8, those BESIDE it, too. */
+enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
+
 #if MSRI_WIDE
 #define LANES    2
 #define NAMED(x) x##_2
@@ -38,9 +41,6 @@ typedef struct msri_task {
 #endif
 
 /* ---- By width */
-
-/* Springs to 4 neighbours, the first of those BELOW, or to 8, those BESIDE it, too. */
-enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
 
 /* The kernels of one width, for some number of ways. */
 #define ADVANCE(target, width, number, with)                                                       \
