@@ -109,11 +109,18 @@ static void open_cell(const msri_noise *noise, msri_noise_cache *cache, double k
   cache->k = k;
 }
 
-void msri_noise_at(const msri_noise *noise, msri_noise_cache *cache, double t, double *x,
-                   double *y) {
+static void look_at(const msri_noise *noise, msri_noise_cache *cache, double t) {
   const double most = 0x1p52, asked = t / noise->time * GRID;
   const double at = msri_max(-most, msri_min(asked, most)), k = floor(at);
   if (!cache->known || cache->k != k) open_cell(noise, cache, k);
-  *x = value(&cache->at_x, at - k);
-  *y = value(&cache->at_y, at - k);
+  cache->t = t;
+  cache->then[0] = value(&cache->at_x, at - k);
+  cache->then[1] = value(&cache->at_y, at - k);
+}
+
+void msri_noise_at(const msri_noise *noise, msri_noise_cache *cache, double t, double *x,
+                   double *y) {
+  if (!cache->known || cache->t != t) look_at(noise, cache, t);
+  *x = cache->then[0];
+  *y = cache->then[1];
 }

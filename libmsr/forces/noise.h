@@ -22,10 +22,10 @@ typedef struct msri_noise {
 msri_noise msri_noise_of(double deviation, double time, uint64_t seed);
 
 /* Values on the grid that were drawn last, and the process between the points k and k + 1 of it,
- * where it was asked for last; all zero: none. */
+ * where it was asked for last, and then; all zero: none. */
 typedef struct msri_noise_cache {
   bool known;
-  double k;
+  double k, t, then[2];
   msri_noise_curve at_x, at_y;
   bool filled[2];
   int64_t block[2];

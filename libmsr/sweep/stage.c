@@ -3,6 +3,8 @@
  * course end with a stage without a drift. */
 #include "sweep/stage.h"
 
+#include <string.h>
+
 /* The joints of a stage: the end of a step, the beginning or the inside of another. */
 typedef struct joints {
   int n;
@@ -54,7 +56,6 @@ static void relax_half(const msri_course *c, const msr_view *s, double share, co
     if (!term->force->relax) continue;
     *keep = term->force->relax(term->self, to->scratch + term->scratch, s,
                                share * c->plan->figures.h, push);
-    to->calls[i]++;
   }
 }
 
@@ -63,9 +64,14 @@ static void relax(const msri_course *c, double t, const msri_swept *state, msri_
   const double share[2] = {at->damp_back, at->damp_forward};
   const msr_view s = msri_plan_view(c->plan, t, NULL, NULL);
   for (int n = 0; n < 2; n++) {
-    relax_half(c, &s, share[n], state, &m->keep[n], m->push[n]);
+    if (n == 0 || share[1] != share[0])
+      relax_half(c, &s, share[n], state, &m->keep[n], m->push[n]);
+    else
+      m->keep[1] = m->keep[0], memcpy(m->push[1], m->push[0], sizeof m->push[1]);
     m->relaxes |= share[n] != 0;
     m->pushes |= m->push[n][0] != 0 || m->push[n][1] != 0;
+    for (size_t i = 0; i < c->plan->n_terms && share[n] != 0; i++)
+      state->calls[i] += c->plan->term[i].force->relax != NULL;
   }
 }
 
