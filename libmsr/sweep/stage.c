@@ -45,33 +45,29 @@ static double time_of(const msri_course *c, uint64_t step, int j) {
   return share == 0 ? t : t + share * f->h;
 }
 
-/* A half flow over `share` of a step, in the air there is at the time of s. Adding -0 changes
- * nothing. */
-static void relax_half(const msri_course *c, const msr_view *s, double share, const msri_swept *to,
-                       double *keep, double *push) {
-  *keep = 1;
-  push[0] = push[1] = -0.0;
-  for (size_t i = 0; i < c->plan->n_terms && share != 0; i++) {
-    const msri_term *term = &c->plan->term[i];
-    if (!term->force->relax) continue;
-    *keep = term->force->relax(term->self, to->scratch + term->scratch, s,
-                               share * c->plan->figures.h, push);
-  }
+/* The term of the air; n_terms: there is none. */
+static size_t air_of(const msr_plan *plan) {
+  size_t n = 0;
+  while (n < plan->n_terms && !plan->term[n].force->relax) n++;
+  return n;
 }
 
+/* The half flows in the air there is at time t; where there is none, adding -0 changes nothing. */
 static void relax(const msri_course *c, double t, const msri_swept *state, msri_motion *m) {
-  const msri_joint *at = &state->still->joint;
-  const double share[2] = {at->damp_back, at->damp_forward};
+  const msri_still *still = state->still;
+  const msri_term *air = &c->plan->term[still->air];
+  const double share[2] = {still->joint.damp_back, still->joint.damp_forward};
   const msr_view s = msri_plan_view(c->plan, t, NULL, NULL);
   for (int n = 0; n < 2; n++) {
-    if (n == 0 || share[1] != share[0])
-      relax_half(c, &s, share[n], state, &m->keep[n], m->push[n]);
+    if (share[n] == 0) continue;
+    if (n > 0 && share[n] == share[0])
+      m->keep[n] = m->keep[0], memcpy(m->push[n], m->push[0], sizeof m->push[n]);
     else
-      m->keep[1] = m->keep[0], memcpy(m->push[1], m->push[0], sizeof m->push[1]);
-    m->relaxes |= share[n] != 0;
+      m->keep[n] = air->force->relax(air->self, state->scratch + air->scratch, &s,
+                                     share[n] * c->plan->figures.h, m->push[n]);
+    state->calls[still->air]++;
+    m->relaxes = true;
     m->pushes |= m->push[n][0] != 0 || m->push[n][1] != 0;
-    for (size_t i = 0; i < c->plan->n_terms && share[n] != 0; i++)
-      state->calls[i] += c->plan->term[i].force->relax != NULL;
   }
 }
 
@@ -121,9 +117,9 @@ static void find_still(const msri_course *c, uint64_t step, int j, msri_still *s
   const joints at = joints_of(c, step, j);
   msri_motion *m = &still->stage.motion;
   *still = (msri_still){.joint = in_air(&at), .drift = j};
-  m->keep[0] = m->keep[1] = 1;
+  for (int n = 0; n < 2; n++) m->keep[n] = 1, m->push[n][0] = m->push[n][1] = -0.0;
   still->inside = (step > 0 || j > 0) && step < c->steps;
-  still->damps = msri_plan_damps(plan);
+  still->air = air_of(plan);
   still->stage.forces = evaluates(plan, &at);
   m->k = plan->mesh.lattice_k;
   for (int side = 0; side < 2; side++) m->L[side] = plan->mesh.lattice_L[side];
@@ -150,6 +146,6 @@ msri_stage msri_course_stage(const msri_course *c, uint64_t k, const msri_swept 
   if (!(inside && still->inside && still->drift == j)) find_still(c, step, j, still);
   msri_stage stage = still->stage;
   count(c->plan, &stage, state->calls);
-  if (still->damps) relax(c, time_of(c, step, j), state, &stage.motion);
+  if (still->air < c->plan->n_terms) relax(c, time_of(c, step, j), state, &stage.motion);
   return stage;
 }

@@ -17,7 +17,7 @@ typedef struct msri_stage {
 typedef struct msri_still {
   bool inside; /* a step of others before and after it: those at the same drift are alike */
   int drift;
-  bool damps;
+  size_t air; /* the term; else their number */
   msri_joint joint;
   msri_stage stage;
 } msri_still;
