@@ -202,25 +202,74 @@ static void check_advance(const msri_lattice_kernel *kernel, const row *from, co
   assert_rows(kernel, "advance", ways, besides, &is, &due);
 }
 
-/* The same; accelerations of masses, and places before, are told. */
-static void check_trace(const msri_lattice_kernel *kernel, const row *from, const msri_motion *m,
+/* ---- Who is told */
+
+typedef struct lookout {
+  bool near[CELLS / MSRI_LANES];
+  uint8_t told[CELLS / MSRI_LANES];
+  double trace[4][SIZE]; /* of cells from AROUND on */
+  msri_lookout at;
+} lookout;
+
+static void look_out(lookout *l, double speed, uint64_t *dice) {
+  for (size_t b = 0; b < CELLS / MSRI_LANES; b++) {
+    l->near[b] = random_below(dice, 2);
+    l->told[b] = random_below(dice, 4) ? 0 : (uint8_t)random_below(dice, 256);
+  }
+  memset(l->trace, 0, sizeof l->trace);
+  l->at = (msri_lookout){.near = l->near,
+                         .told = l->told,
+                         .speed = speed,
+                         .trace = {l->trace[0] + AROUND, l->trace[1] + AROUND, l->trace[2] + AROUND,
+                                   l->trace[3] + AROUND}};
+}
+
+static bool is_told(const row *from, const row *to, size_t c, bool near, double speed) {
+  const bool stays = floor(from->x[c]) == floor(to->x[c]) && floor(from->y[c]) == floor(to->y[c]);
+  const double v2 = to->vx[c] * to->vx[c] + to->vy[c] * to->vy[c];
+  return from->mass[c] && !(near ? stays : v2 <= speed * speed);
+}
+
+static unsigned due_of(const row *from, const row *to, size_t block, bool near, double speed) {
+  unsigned bits = 0;
+  for (size_t k = 0; k < MSRI_LANES; k++)
+    bits |= (unsigned)is_told(from, to, AROUND + block * MSRI_LANES + k, near, speed) << k;
+  return bits;
+}
+
+/* Those that are due, besides whoever was told before; the trace is that of the cells. */
+static void assert_told(const lookout *l, const lookout *before, const row *from, const row *to,
+                        double accelerations[2][SIZE]) {
+  const double *const trace[] = {accelerations[0], accelerations[1], from->x, from->y};
+  bool ran = false;
+  for (size_t b = 0; b < from->n / MSRI_LANES; b++) {
+    const size_t first = AROUND + b * MSRI_LANES;
+    const unsigned due = is_listed(from, first) ? due_of(from, to, b, l->near[b], l->at.speed) : 0;
+    assert_int_equal(l->told[b], before->told[b] | due);
+    ran |= due != 0 && !l->near[b];
+    for (size_t c = first; c < first + MSRI_LANES; c++)
+      for (int what = 0; what < 4; what++)
+        if (from->mass[c] && (l->near[b] || due >> (c - first) & 1))
+          assert_memory_equal(&l->trace[what][c], &trace[what][c], sizeof(double));
+  }
+  assert_int_equal(l->at.ran, ran);
+}
+
+/* The same as advance; and who is to be told is. */
+static void check_watch(const msri_lattice_kernel *kernel, const row *from, const msri_motion *m,
                         int ways, int besides) {
+  uint64_t dice = from->n + (uint64_t)besides;
   row due = *from, is = *from, same = *from;
-  double told_of[4][SIZE] = {{0}}, wanted[4][SIZE] = {{0}};
-  const msri_cells at = cells_of(&is), before = cells_of(&same);
-  const msri_trace trace = {told_of[0] + AROUND, told_of[1] + AROUND, told_of[2] + AROUND,
-                            told_of[3] + AROUND};
-  memcpy(wanted[2] + AROUND, before.x, before.n * sizeof(double));
-  memcpy(wanted[3] + AROUND, before.y, before.n * sizeof(double));
-  accelerate(&same, m, ways, besides, wanted[0], wanted[1]);
+  double a[2][SIZE] = {{0}};
+  lookout l, before;
+  const msri_cells at = cells_of(&is);
+  look_out(&l, uniform(&dice, 0, 4), &dice);
+  before = l;
+  accelerate(&same, m, ways, besides, a[0], a[1]);
   const double fastest = advance_cells(&due, m, ways, besides);
-  const double told = loops_of(kernel, ways)->trace[besides](&at, m, &trace);
-  assert_rows(kernel, "trace", ways, besides, &is, &due);
-  for (int what = 0; what < 4; what++)
-    for (size_t c = 0; c < SIZE; c++)
-      if (from->mass[c] || (what < 2 && !is_listed(from, c)))
-        assert_memory_equal(&told_of[what][c], &wanted[what][c], sizeof told_of[0][0]);
-  assert_memory_equal(&told, &fastest, sizeof told);
+  loops_of(kernel, ways)->watch[besides](&at, m, &l.at);
+  assert_rows(kernel, "watch", ways, besides, &is, &due);
+  assert_told(&l, &before, from, &is, a);
   assert_true(kernel->fastest(&at) == fastest);
 }
 
@@ -239,7 +288,7 @@ static void check_all(const row *from, const msri_motion *m) {
   for (size_t k = 0; (kernel = kernel_here(k)); k++)
     for (int ways = MSRI_BELOW + 1; ways <= MSRI_WAYS; ways += MSRI_WAYS - MSRI_BELOW - 1) {
       for (int besides = 0; besides < MSRI_BESIDES; besides++)
-        check_advance(kernel, from, m, ways, besides), check_trace(kernel, from, m, ways, besides);
+        check_advance(kernel, from, m, ways, besides), check_watch(kernel, from, m, ways, besides);
       check_pull(kernel, from, m, ways);
     }
 }
@@ -330,7 +379,7 @@ static void forces_may_take_each_others_place(void **state) {
   }
 }
 
-/* The fastest may be anywhere, and go backwards; what is no number is. */
+/* The fastest may be anywhere, and go backwards; what is no number is, and is told. */
 static void the_fastest_is_found(void **state) {
   (void)state;
   uint64_t dice = 5;
@@ -343,15 +392,16 @@ static void the_fastest_is_found(void **state) {
     double *const v = &(at % 2 ? r.vx : r.vy)[AROUND + at];
     *v = at % 3 ? -1e6 : 1e6;
     for (size_t k = 0; (kernel = kernel_here(k)); k++)
-      check_trace(kernel, &r, &m, MSRI_WAYS, 0), check_trace(kernel, &r, &m, 2, 3);
+      check_watch(kernel, &r, &m, MSRI_WAYS, 0), check_watch(kernel, &r, &m, 2, 3);
     *v = NO_NUMBER;
     for (size_t k = 0; (kernel = kernel_here(k)); k++) {
       row is = r;
-      double trace[4][SIZE];
-      const msri_trace to = {trace[0], trace[1], trace[2], trace[3]};
+      lookout l;
       const msri_cells cells = cells_of(&is);
       assert_true(isnan(kernel->fastest(&cells)));
-      assert_true(isnan(kernel->four.trace[1](&cells, &m, &to)));
+      look_out(&l, 1e9, &dice);
+      kernel->four.watch[1](&cells, &m, &l.at);
+      assert_true(l.told[at / MSRI_LANES] >> at % MSRI_LANES & 1);
     }
   }
 }

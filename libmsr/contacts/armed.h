@@ -47,45 +47,12 @@ static inline void msri_armed_earn(msri_armed *armed, double path, double cleara
 uint64_t msri_armed_drift(msri_armed *armed, const msri_contact *contact, double h,
                           const msri_flock *flock, msri_debts *debts);
 
-/* ---- Rows of blocks, of which it's known who has left a pixel */
+/* ---- Rows of blocks */
 
-/* How far masses of a row have gone [px], and in how many steps; until they have gone so far none
- * of them can come to a support. Beyond MSRI_ARMED_LIMIT all that is counted so begins anew: a step
- * adds to `gone` with an error of 2^-30 at most, and `until` has one such. */
-typedef struct msri_armed_row {
-  double gone, until;
-  uint64_t steps;
-} msri_armed_row;
-
-/* The same of a block: how far, counted as the row's, and from which step on it pays to ask again.
- */
-typedef struct msri_armed_block {
-  double until;
-  uint64_t asks;
-} msri_armed_block;
-
-/* Those of a state, in the order of the objects' rows and blocks. */
+/* How far the fastest of each row may have gone [px], and how far the masses of each block can go
+ * and meet nothing, counted so: at least. In the order of the objects' rows and blocks. */
 typedef struct msri_armed_rows {
-  msri_armed_row *row;
-  msri_armed_block *block;
+  double *gone, *until;
 } msri_armed_rows;
-
-/* A step in which none of a row goes further than `path`: may one have come to a support? */
-static inline bool msri_armed_row_goes(msri_armed_row *row, double path) {
-  row->steps++;
-  row->gone += path + MSRI_ARMED_ROUNDING;
-  return !(row->gone <= row->until);
-}
-
-/* Some masses of the row have been looked at in a step of `path`, after which that is their
- * clearance. */
-static inline void msri_armed_block_earn(msri_armed_block *block, const msri_armed_row *row,
-                                         double path, double clearance) {
-  enum { FEW = 4, REST = 15 };
-  if (clearance > FEW * path)
-    block->until = row->gone + clearance;
-  else
-    block->asks = row->steps + REST;
-}
 
 #endif

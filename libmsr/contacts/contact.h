@@ -38,10 +38,10 @@ typedef struct msri_contact {
    * is more accurate. By ascending masses; calls for ranges that don't overlap may be made at once.
    */
   uint64_t (*drift)(const void *self, double h, const msri_flock *flock, msri_debts *debts);
-  /* Up to MSRI_FLOCK_BLOCK masses have drifted so, as if nothing were in the way: puts those right
-   * that something is in the way of. */
+  /* Up to MSRI_FLOCK_BLOCK masses have drifted so, as if nothing were in the way: of some of them,
+   * a bit for each, puts those right that something is in the way of. */
   uint64_t (*stop_drift)(const void *self, double h, const msri_flock *block,
-                         const msri_places *from, msri_debts *debts);
+                         const msri_places *from, uint64_t some, msri_debts *debts);
   /* How far each of n masses can go, along either axis, and meet nothing, at least [px]; 0 as soon
    * as that is nothing for one of them. NULL: unknown. */
   double (*clearance)(const void *self, size_t n, const double *x, const double *y);

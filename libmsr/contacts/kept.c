@@ -137,8 +137,8 @@ static uint64_t drift(const void *self, double h, const msri_flock *flock, msri_
 }
 
 static uint64_t stop_drift(const void *self, double h, const msri_flock *block,
-                           const msri_places *from, msri_debts *debts) {
-  return msri_supports_stop(self, h, block, from, debts, walk);
+                           const msri_places *from, uint64_t some, msri_debts *debts) {
+  return msri_supports_stop(self, h, block, from, some, debts, walk);
 }
 
 /* Half of the velocity's change comes before the drift, half after it, so that a bounce costs no

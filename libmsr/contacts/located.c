@@ -134,8 +134,8 @@ static uint64_t drift(const void *self, double h, const msri_flock *flock, msri_
 }
 
 static uint64_t stop_drift(const void *self, double h, const msri_flock *block,
-                           const msri_places *from, msri_debts *debts) {
-  return msri_supports_stop(self, h, block, from, debts, walk);
+                           const msri_places *from, uint64_t some, msri_debts *debts) {
+  return msri_supports_stop(self, h, block, from, some, debts, walk);
 }
 
 /* The flight that mass i, of coordinates i and j, made in a step. Its acceleration is that which

@@ -107,13 +107,13 @@ static inline bool msri_supports_open(const msri_supports *s, const double *from
   return touch && row0[c0] > 0 && row0[c1] > 0 && row1[c0] > 0 && row1[c1] > 0;
 }
 
-/* msri_contact's stop_drift: those walk that have left their pixel and may have come to a support.
- * Inline, so that nothing is called through a pointer. */
+/* msri_contact's stop_drift: of some those walk that may have come to a support. Inline, so that
+ * nothing is called through a pointer. */
 static inline uint64_t msri_supports_stop(const msri_supports *s, double h, const msri_flock *f,
-                                          const msri_places *was, msri_debts *debts,
+                                          const msri_places *was, uint64_t some, msri_debts *debts,
                                           msri_walk *walk) {
   uint64_t collisions = 0;
-  for (uint64_t left = s->kernel->leave(f, was); left > 0; left &= left - 1) {
+  for (uint64_t left = some; left > 0; left &= left - 1) {
     const size_t k = msri_lowest_bit(left);
     const double from[] = {was->x[k], was->y[k]}, to[] = {f->x[k], f->y[k]};
     const double gap = msri_supports_gap(s, from[0], from[1]);
@@ -136,7 +136,8 @@ static inline uint64_t msri_supports_drift(const msri_supports *s, double h,
     memcpy(x, f.x, f.n * sizeof *x);
     memcpy(y, f.y, f.n * sizeof *y);
     s->kernel->glide(&f, h);
-    collisions += msri_supports_stop(s, h, &f, &(msri_places){x, y}, debts, walk);
+    const msri_places was = {x, y};
+    collisions += msri_supports_stop(s, h, &f, &was, s->kernel->leave(&f, &was), debts, walk);
   }
   return collisions;
 }

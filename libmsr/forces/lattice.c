@@ -15,8 +15,7 @@ typedef struct place {
 typedef struct msri_task {
   int ways; /* of springs, from MSRI_RIGHT on */
   int besides;
-  bool traces; /* to: */
-  msri_trace trace;
+  bool watches;
 } msri_task;
 
 /* Springs to 4 neighbours, the first of those BELOW, or to 8, those BESIDE it, too. */
@@ -46,17 +45,17 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
 #define ADVANCE(target, width, number, with)                                                       \
   target static void advance_##width##_##number##_##with(const msri_cells *s,                      \
                                                          const msri_motion *motion) {              \
-    go_##width(s, motion, &(msri_task){.ways = number, .besides = with});                          \
+    go_##width(s, motion, &(msri_task){.ways = number, .besides = with}, NULL);                    \
   }
-#define TRACE(target, width, number, with)                                                         \
-  target static double trace_##width##_##number##_##with(                                          \
-      const msri_cells *s, const msri_motion *motion, const msri_trace *to) {                      \
-    return go_##width(                                                                             \
-        s, motion, &(msri_task){.ways = number, .besides = with, .traces = true, .trace = *to});   \
+#define WATCH(target, width, number, with)                                                         \
+  target static void watch_##width##_##number##_##with(                                            \
+      const msri_cells *s, const msri_motion *motion, msri_lookout *watch) {                       \
+    const msri_task task = {.ways = number, .besides = with, .watches = true};                     \
+    go_watched_##width(s, motion, &task, watch);                                                   \
   }
 #define BOTH(target, width, number, with)                                                          \
   ADVANCE(target, width, number, with)                                                             \
-  TRACE(target, width, number, with)
+  WATCH(target, width, number, with)
 #define KERNELS(target, width, number)                                                             \
   BOTH(target, width, number, 0)                                                                   \
   BOTH(target, width, number, 1)                                                                   \
@@ -71,7 +70,7 @@ enum { BELOW = MSRI_BELOW + 1, BESIDE = MSRI_WAYS };
 #define ALL(kernel)                                                                                \
   { kernel##_0, kernel##_1, kernel##_2, kernel##_3, kernel##_0, kernel##_1, kernel##_6, kernel##_7 }
 #define ROW(width, number)                                                                         \
-  { ALL(advance_##width##_##number), ALL(trace_##width##_##number), pull_##width##_##number, }
+  { ALL(advance_##width##_##number), ALL(watch_##width##_##number), pull_##width##_##number, }
 
 #define WIDTH(target, width)                                                                       \
   KERNELS(target, width, BELOW)                                                                    \

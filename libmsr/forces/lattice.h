@@ -4,6 +4,7 @@
 #define MSRI_LATTICE_H
 
 #include "base/base.h"
+#include "base/machine.h"
 
 /* Springs that begin at a cell: to its right, and to the cells below it, right below it, one to the
  * left, one to the right. Along a row all are in the order of their cells. */
@@ -44,10 +45,21 @@ typedef struct msri_cells {
   ptrdiff_t back[MSRI_WAYS];
 } msri_cells;
 
-/* Of n cells, those of the blocks: their accelerations, and where they were before they drifted. */
+/* Of n cells: their accelerations, and where they were before they drifted. */
 typedef struct msri_trace {
   double *ax, *ay, *x, *y; /* [n] */
 } msri_trace;
+
+/* A look at masses that something may be in the way of. In blocks that are near it those are told
+ * that leave their pixel, elsewhere those that go faster than they may, and what is no number.
+ * Blocks that are near, or tell, leave their trace. */
+typedef struct msri_lookout {
+  const bool *near; /* [n / MSRI_LANES] */
+  uint8_t *told;    /* [n / MSRI_LANES]: a bit for each of a block, added to what is there */
+  double speed;     /* that masses may have */
+  msri_trace trace;
+  bool ran; /* one that isn't near was told: set by the kernel */
+} msri_lookout;
 
 /* What may act beside the springs: a weight; air between the kicks, which may push. */
 enum { MSRI_WITH_WEIGHT = 1, MSRI_WITH_AIR = 2, MSRI_WITH_PUSH = 4, MSRI_BESIDES = 8 };
@@ -67,10 +79,9 @@ typedef struct msri_motion {
 typedef struct msri_loops {
   /* Forces, then kick, kick, drift; by what acts beside the springs. */
   void (*advance[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion);
-  /* The same; what a drift past something in the way is to know goes to trace. Returns the largest
-   * velocity along an axis; NaN if one is. */
-  double (*trace[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion,
-                                const msri_trace *trace);
+  /* The same, watched. */
+  void (*watch[MSRI_BESIDES])(const msri_cells *cells, const msri_motion *motion,
+                              msri_lookout *watch);
   /* Only the forces of the springs to the cells below. */
   void (*pull)(const msri_cells *cells, const msri_motion *motion);
 } msri_loops;

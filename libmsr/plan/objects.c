@@ -101,7 +101,9 @@ static void number(const finds *f, extent *of, msri_objects *o) {
     of[s].number = o->n;
     of[s].next = next;
     const size_t rows = of[s].bottom - of[s].top + 1;
-    o->object[o->n++] = (msri_object){o->n_rows, rows, of[s].right - of[s].left, of[s].masses};
+    msri_object *object = &o->object[o->n++];
+    *object = (msri_object){o->n_rows, rows, of[s].right - of[s].left, of[s].masses, o->n_blocks};
+    o->n_blocks += rows * msri_object_blocks(object);
     o->n_rows += rows;
     next += of[s].pieces;
   }
@@ -115,9 +117,7 @@ static void arrange(const finds *f, extent *of, msri_objects *o) {
     const size_t row = o->object[e->number].row + (from->row - e->top);
     const bool first = s == f->parent[s] || o->row[row] == SIZE_MAX;
     if (first) o->row[row] = e->next;
-    o->piece[e->next++] =
-        (msri_piece){from->first, from->column - e->left, from->count, o->n_blocks};
-    o->n_blocks += msri_flock_blocks(from->count);
+    o->piece[e->next++] = (msri_piece){from->first, from->column - e->left, from->count};
   }
   o->row[o->n_rows] = f->n;
 }

@@ -2,13 +2,12 @@
 #ifndef MSRI_OBJECTS_H
 #define MSRI_OBJECTS_H
 
-#include "contacts/flock.h"
+#include "forces/lattice.h"
 
 /* Masses first .. first+count-1, side by side in a row from a column of the object on. */
 typedef struct msri_piece {
   size_t first;
   uint32_t column, count;
-  size_t block; /* of MSRI_FLOCK_BLOCK masses, the last of fewer: the first of the piece's */
 } msri_piece;
 
 /* Rows row .. row+rows-1 of msri_objects.row. */
@@ -16,6 +15,7 @@ typedef struct msri_object {
   size_t row, rows;
   size_t width; /* in columns, of the smallest rectangle around it */
   size_t masses;
+  size_t block; /* the first: each row has msri_object_blocks */
 } msri_object;
 
 typedef struct msri_objects {
@@ -24,6 +24,11 @@ typedef struct msri_objects {
   msri_piece *piece;   /* [row[n_rows]] from the left */
   size_t n, n_rows, n_blocks;
 } msri_objects;
+
+/* Blocks of MSRI_LANES cells in each row. */
+static inline size_t msri_object_blocks(const msri_object *object) {
+  return (object->width + MSRI_LANES - 1) / MSRI_LANES;
+}
 
 /* Those of a picture, with springs to 4 or 8 neighbours. MSR_ENOMEM: then nothing is left. */
 msr_status msri_objects_create(const msr_picture *picture, int neighbours, msri_objects *objects,

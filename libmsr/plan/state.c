@@ -50,9 +50,10 @@ static void place_room(msr_state *state, const room *r, const msri_graph *graph,
 }
 
 static size_t armed_bytes(const msr_plan *plan) {
-  const msri_objects *o = &plan->objects;
-  if (!msri_plan_sweeps(plan)) return msri_flock_blocks(plan->figures.masses) * sizeof(msri_armed);
-  return o->n_rows * sizeof(msri_armed_row) + o->n_blocks * sizeof(msri_armed_block);
+  const size_t alone = msri_flock_blocks(plan->figures.masses) * sizeof(msri_armed);
+  const size_t swept = (plan->objects.n_rows + plan->objects.n_blocks) * sizeof(double);
+  if (!msri_plan_arms(plan)) return 0;
+  return msri_plan_sweeps(plan) && swept > alone ? swept : alone;
 }
 
 static layout lay_out(const msr_plan *plan) {
@@ -68,7 +69,7 @@ static layout lay_out(const msr_plan *plan) {
   l.work = reserve(&end, (vectors > 0 || sweeps ? vectors : 1) * vector);
   l.before = reserve(&end, msri_plan_bounces(plan) ? 2 * vector : 0);
   l.ahead = reserve(&end, msri_plan_settles(plan) && !sweeps ? vector : 0);
-  l.armed = reserve(&end, msri_plan_arms(plan) ? armed_bytes(plan) : 0);
+  l.armed = reserve(&end, armed_bytes(plan));
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
   l.drive = reserve(&end, plan->followed ? vector : 0);
   l.discs = reserve(&end, plan->discs ? msri_discs_room(plan->discs) : 0);
@@ -113,7 +114,7 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .ahead = (void *)(arrays + l.ahead),
       .armed = (void *)(arrays + l.armed),
       .rows = {(void *)(arrays + l.armed),
-               (void *)(arrays + l.armed + plan->objects.n_rows * sizeof(msri_armed_row))},
+               (void *)(arrays + l.armed + plan->objects.n_rows * sizeof(double))},
       .care = {.kept = (void *)(arrays + l.kept)},
       .middle = (void *)(arrays + l.middle),
       .drive = (void *)(arrays + l.drive),
@@ -211,9 +212,7 @@ void msri_state_put_back(msr_state *state, const double *kept) {
   msri_state_disarm(state);
 }
 
-void msri_state_disarm(msr_state *state) {
-  if (msri_plan_arms(state->plan)) memset(state->armed, 0, armed_bytes(state->plan));
-}
+void msri_state_disarm(msr_state *state) { memset(state->armed, 0, armed_bytes(state->plan)); }
 
 void msri_state_touched(msr_state *state) {
   moved(state);

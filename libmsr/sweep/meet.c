@@ -2,19 +2,132 @@
  * that are paid by the acceleration at the end of the step, before anything else happens there. */
 #include "sweep/meet.h"
 
+#include "contacts/armed.h"
+
 #include <math.h>
 #include <string.h>
 
-msri_trace msri_meet_trace(size_t cells, double *memory) {
-  return (msri_trace){memory, memory + cells, memory + 2 * cells, memory + 3 * cells};
+/* A mass may be so much faster, until it's asked again, than the fastest is now; and go so far in a
+ * step if all are slow [px]. */
+static const double faster = 1.5, slow = 1.0 / 64;
+
+/* How far masses can go is known to the pixel: others than near ones can go one, and some steps. */
+enum { STEPS = 8 };
+
+/* With what rounding makes of it, see MSRI_ARMED_ROUNDING, and of a speed's square. */
+static double path_of(double h, double speed) {
+  return fabs(h) * speed * (1 + 0x1p-40) + MSRI_ARMED_ROUNDING;
 }
 
-msri_meet msri_meet_place(size_t cells, size_t masses, double *memory, msri_tally *tally) {
-  double *before = memory + MSRI_MEET_TRACE * cells, *debts = before + 2 * masses;
-  return (msri_meet){.trace = msri_meet_trace(cells, memory),
-                     .before = before,
-                     .debts = {.debt = (void *)debts, .capacity = masses},
-                     .tally = tally};
+/* ---- Memory */
+
+enum { DOUBLE = sizeof(double) };
+
+static size_t doubles(size_t bytes) { return (bytes + DOUBLE - 1) / DOUBLE; }
+
+static size_t blocks_of(size_t cells) { return cells / MSRI_LANES; }
+
+size_t msri_meet_size(size_t cells, size_t masses) {
+  const size_t blocks = blocks_of(cells);
+  return 1 + blocks + 2 * doubles(blocks) + 2 * masses + doubles(masses * sizeof(msri_debt));
+}
+
+size_t msri_meet_stage_size(size_t cells) { return 4 * cells; }
+
+msri_meet msri_meet_place(size_t cells, size_t masses, double *kept, double *stage,
+                          msri_tally *tally) {
+  const size_t blocks = blocks_of(cells), bytes = doubles(blocks);
+  double *until = kept + 1, *told = until + blocks, *before = told + 2 * bytes;
+  msri_meet meet = {.near = (void *)(told + bytes),
+                    .blocks = blocks,
+                    .before = before,
+                    .debts = {.debt = (void *)(before + 2 * masses), .capacity = masses},
+                    .tally = tally};
+  meet.watch =
+      (msri_lookout){.near = meet.near,
+                     .told = (void *)told,
+                     .speed = (double)INFINITY,
+                     .trace = {stage, stage + cells, stage + 2 * cells, stage + 3 * cells}};
+  memset(told, 0, bytes * sizeof *told);
+  memset(kept, 0, (1 + blocks) * sizeof *kept);
+  msri_meet_open(&meet, kept, until);
+  return meet;
+}
+
+void msri_meet_open(msri_meet *meet, double *gone, double *until) {
+  memset(meet->near, 0, meet->blocks * sizeof *meet->near);
+  meet->gone = gone, meet->until = until;
+  meet->asked = false;
+}
+
+/* ---- Who is near */
+
+/* How far each of some masses side by side can go at least, as one of them can so far. */
+static double clearance_around(const msri_contact *contact, const double *x, const double *y) {
+  enum { MIDDLE = MSRI_LANES / 2 };
+  double far = MSRI_ARMED_ROUNDING;
+  for (int k = 0; k < MSRI_LANES; k++) {
+    far = msri_max(far, fabs(x[k] - x[MIDDLE]));
+    far = msri_max(far, fabs(y[k] - y[MIDDLE]));
+  }
+  return contact->clearance(contact->self, 1, x + MIDDLE, y + MIDDLE) - far - MSRI_ARMED_ROUNDING;
+}
+
+/* Of a block; if that isn't `wish`, maybe more. */
+static double clearance_of(const msri_contact *contact, const msri_cells *cells,
+                           const msri_block *block, double wish) {
+  const double *x = cells->x + block->cell, *y = cells->y + block->cell;
+  double least = (double)INFINITY;
+  if (block->mass == UINT8_MAX) {
+    const double around = clearance_around(contact, x, y);
+    return around >= wish ? around : contact->clearance(contact->self, MSRI_LANES, x, y);
+  }
+  for (unsigned k = 0; k < MSRI_LANES && least >= wish; k++)
+    if (block->mass >> k & 1)
+      least = msri_min(least, contact->clearance(contact->self, 1, x + k, y + k));
+  return least;
+}
+
+static void ask_block(const msri_pass *pass, const msri_cells *cells, const msri_block *block,
+                      double wish, msri_meet *meet) {
+  const size_t b = block->cell / MSRI_LANES;
+  if (!(meet->until[b] >= *meet->gone + wish)) {
+    const double clearance = clearance_of(&pass->plan->contact, cells, block, wish);
+    meet->near[b] = !(clearance >= wish);
+    meet->until[b] = meet->near[b] ? 0 : *meet->gone + clearance;
+  }
+  if (!meet->near[b]) meet->least = msri_min(meet->least, meet->until[b]);
+}
+
+/* Sums of paths don't go on for ever. */
+static void begin_anew(msri_meet *meet) {
+  *meet->gone = 0;
+  memset(meet->until, 0, meet->blocks * sizeof *meet->until);
+}
+
+/* All are near that might not be able to go some steps of h. */
+static void ask(const msri_pass *pass, double h, const msri_cells *cells, msri_meet *meet) {
+  const bool arms = pass->plan->contact.clearance;
+  meet->pace = msri_max(slow / fabs(h), faster * pass->fastest(cells));
+  double wish = 1 + STEPS * path_of(h, meet->pace);
+  if (!arms || !(wish <= MSRI_ARMED_LIMIT)) meet->pace = wish = (double)INFINITY;
+  if (!(*meet->gone <= MSRI_ARMED_LIMIT)) begin_anew(meet);
+  meet->least = (double)INFINITY;
+  for (size_t n = 0; n < cells->blocks; n++)
+    if (arms)
+      ask_block(pass, cells, &cells->block[n], wish, meet);
+    else
+      meet->near[cells->block[n].cell / MSRI_LANES] = true;
+  meet->asked = true;
+}
+
+/* How fast may masses be in a step of h? */
+static double pace_for(const msri_pass *pass, double h, const msri_cells *cells, msri_meet *meet) {
+  if (h == 0) return (double)INFINITY;
+  if (!meet->asked || !(*meet->gone + path_of(h, meet->pace) <= meet->least))
+    ask(pass, h, cells, meet);
+  *meet->gone += path_of(h, meet->pace);
+  return meet->pace;
 }
 
 /* ---- As if nothing were in the way */
@@ -27,40 +140,50 @@ static double kicked(const msri_motion *m, int axis, double v, double a) {
   return v + m->kick[1] * a;
 }
 
-/* The kernel moves all; those that are owed something are moved again, from where they were. */
-double msri_meet_advance(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells,
-                         msri_meet *meet) {
-  const msri_motion *m = &stage->motion;
-  const msri_trace *was = &meet->trace;
-  msri_debts *debts = &meet->debts;
-  for (size_t d = 0; d < debts->n; d++) {
-    meet->before[2 * d] = cells->vx[debts->debt[d].mass];
-    meet->before[2 * d + 1] = cells->vy[debts->debt[d].mass];
+/* Whoever is owed something may go any way: its block is near for now. */
+static void remember(const msri_cells *cells, msri_meet *meet) {
+  for (size_t d = 0; d < meet->debts.n; d++) {
+    const size_t c = meet->debts.debt[d].mass;
+    meet->before[2 * d] = cells->vx[c];
+    meet->before[2 * d + 1] = cells->vy[c];
+    meet->near[c / MSRI_LANES] = true;
+    meet->until[c / MSRI_LANES] = 0;
   }
-  double fastest = pass->loops->trace[msri_field_besides(pass, stage)](cells, m, was);
-  for (size_t d = 0; d < debts->n; d++) {
-    const msri_debt *debt = &debts->debt[d];
+}
+
+/* The kernel has moved all; those that are owed something are moved again, from where they were. */
+static void pay(const msri_motion *m, const msri_cells *cells, msri_meet *meet) {
+  const msri_trace *was = &meet->watch.trace;
+  for (size_t d = 0; d < meet->debts.n; d++) {
+    const msri_debt *debt = &meet->debts.debt[d];
     const size_t c = debt->mass;
     const double ax = was->ax[c], ay = was->ay[c];
     cells->vx[c] = kicked(m, 0, meet->before[2 * d] + debt->x * ax, ax);
     cells->vy[c] = kicked(m, 1, meet->before[2 * d + 1] + debt->y * ay, ay);
     cells->x[c] = was->x[c] + m->drift * cells->vx[c];
     cells->y[c] = was->y[c] + m->drift * cells->vy[c];
-    fastest = msri_worse(msri_worse(fabs(cells->vx[c]), fabs(cells->vy[c])), fastest);
+    meet->watch.told[c / MSRI_LANES] |= (uint8_t)(1U << c % MSRI_LANES);
   }
-  debts->n = 0;
-  return fastest;
+  meet->debts.n = 0;
+}
+
+static void advance(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells,
+                    msri_meet *meet) {
+  meet->watch.speed = pace_for(pass, stage->motion.drift, cells, meet);
+  remember(cells, meet);
+  pass->loops->watch[msri_field_besides(pass, stage)](cells, &stage->motion, &meet->watch);
+  pay(&stage->motion, cells, meet);
 }
 
 /* ---- What is */
 
-/* Of n masses from cell c on. */
-static void stop(const msri_pass *pass, double h, const msri_cells *cells, size_t c, size_t n,
+/* In a block of which some are told. */
+static void stop(const msri_pass *pass, double h, const msri_cells *cells, size_t c, uint8_t told,
                  msri_meet *meet) {
   const msri_contact *contact = &pass->plan->contact;
-  const msri_trace *trace = &meet->trace;
+  const msri_trace *trace = &meet->watch.trace;
   const msri_places from = {trace->x + c, trace->y + c};
-  const msri_flock f = {.n = n,
+  const msri_flock f = {.n = MSRI_LANES,
                         .first = c,
                         .x = cells->x + c,
                         .y = cells->y + c,
@@ -71,54 +194,39 @@ static void stop(const msri_pass *pass, double h, const msri_cells *cells, size_
                         .ax = trace->ax + c,
                         .ay = trace->ay + c};
   msri_debts *debts = msri_plan_settles(pass->plan) ? &meet->debts : NULL;
-  meet->tally->met += contact->stop_drift(contact->self, h, &f, &from, debts);
+  meet->tally->met += contact->stop_drift(contact->self, h, &f, &from, told, debts);
 }
 
-/* A block of a row that is armed. */
-static void stop_armed(const msri_pass *pass, double h, double path, const msri_cells *cells,
-                       size_t c, size_t n, const msri_armed_row *row, msri_armed_block *block,
-                       msri_meet *meet) {
-  const msri_contact *contact = &pass->plan->contact;
-  if (row->gone <= block->until) return;
-  stop(pass, h, cells, c, n, meet);
-  if (row->steps < block->asks) return;
-  msri_armed_block_earn(block, row, path,
-                        contact->clearance(contact->self, n, cells->x + c, cells->y + c));
-}
-
-/* Odometers don't go on for ever: the row and its blocks begin anew. */
-static void forget(const msri_pass *pass, size_t row) {
-  const msri_objects *o = &pass->plan->objects;
-  const msri_armed_rows *armed = &pass->state->armed;
-  armed->row[row] = (msri_armed_row){0};
-  for (size_t p = o->row[row]; p < o->row[row + 1]; p++)
-    memset(&armed->block[o->piece[p].block], 0,
-           msri_flock_blocks(o->piece[p].count) * sizeof *armed->block);
-}
-
-void msri_meet_stop(const msri_pass *pass, const msri_stage *stage, size_t row, double fastest,
-                    const msri_cells *cells, size_t base, msri_meet *meet) {
-  const double h = stage->motion.drift, path = fabs(h) * fastest;
-  const msri_objects *o = &pass->plan->objects;
-  const bool arms = pass->plan->contact.clearance;
-  msri_armed_row *armed = arms ? &pass->state->armed.row[row] : NULL;
-  if (arms && !msri_armed_row_goes(armed, path)) return;
-  double until = (double)INFINITY;
-  for (size_t p = o->row[row]; p < o->row[row + 1]; p++) {
-    const msri_piece *piece = &o->piece[p];
-    msri_armed_block *block = &pass->state->armed.block[piece->block];
-    for (size_t k = 0; k < piece->count; k += MSRI_FLOCK_BLOCK, block++) {
-      const size_t rest = piece->count - k, n = rest < MSRI_FLOCK_BLOCK ? rest : MSRI_FLOCK_BLOCK;
-      const size_t c = base + piece->column + k;
-      if (!arms) {
-        stop(pass, h, cells, c, n, meet);
-        continue;
-      }
-      stop_armed(pass, h, path, cells, c, n, armed, block, meet);
-      until = msri_min(until, block->until);
-    }
+/* One that went faster than it should have has gone further than is counted. */
+static void stop_word(const msri_pass *pass, double h, const msri_cells *cells, size_t first,
+                      msri_meet *meet) {
+  uint8_t told[sizeof(uint64_t)];
+  memcpy(told, meet->watch.told + first, sizeof told);
+  memset(meet->watch.told + first, 0, sizeof told);
+  for (size_t n = 0; n < sizeof told; n++) {
+    if (told[n] == 0) continue;
+    if (h != 0) stop(pass, h, cells, (first + n) * MSRI_LANES, told[n], meet);
+    if (meet->watch.ran) meet->until[first + n] = 0;
   }
-  if (!arms) return;
-  armed->until = until;
-  if (!(armed->gone <= MSRI_ARMED_LIMIT)) forget(pass, row);
+}
+
+static void stop_all(const msri_pass *pass, double h, const msri_cells *cells, msri_meet *meet) {
+  uint64_t some;
+  for (size_t block = 0; block < meet->blocks; block += sizeof some) {
+    memcpy(&some, meet->watch.told + block, sizeof some);
+    if (some != 0) stop_word(pass, h, cells, block, meet);
+  }
+  if (meet->watch.ran) meet->asked = false;
+}
+
+double msri_meet_step(const msri_pass *pass, const msri_stage *stage, const msri_cells *cells,
+                      msri_meet *meet) {
+  msri_tally *tally = meet->tally;
+  const bool timed = msri_tally_is_turn(tally);
+  double start = timed ? msri_clock_now() : 0;
+  advance(pass, stage, cells, meet);
+  if (timed) start = msri_tally_add(tally, start, &tally->kicks);
+  stop_all(pass, stage->motion.drift, cells, meet);
+  if (timed) msri_tally_add(tally, start, &tally->drifts);
+  return stage->tells ? pass->fastest(cells) : 0;
 }

@@ -55,10 +55,10 @@ static size_t pulls_size(int ways, size_t stride) {
   return 2 * (size_t)(ways - MSRI_BELOW) * stride;
 }
 
-/* Traces, what is owed, and the velocities before that. Marks are needed before. */
+/* Marks are needed before what follows. */
 static size_t size_of(int ways, bool meets, size_t cells, size_t around, size_t masses) {
   const size_t marks = msri_marks_bytes(cells, around) / sizeof(double) + 1;
-  const size_t meeting = meets ? MSRI_MEET_TRACE * cells + MSRI_MEET_DEBT * masses : 0;
+  const size_t meeting = meets ? msri_meet_size(cells, masses) + msri_meet_stage_size(cells) : 0;
   const size_t later = pulls_size(ways, cells + 2 * around) + meeting;
   return msri_field_size(cells, around) + (later > marks ? later : marks);
 }
@@ -158,20 +158,6 @@ msri_cells msri_patch_open(const msri_pass *pass, const msri_group *group, doubl
 
 /* ---- Stages */
 
-/* Past what is in the way. */
-static double step_past(const msri_pass *pass, const msri_stage *stage, const msri_group *group,
-                        const msri_cells *cells, msri_meet *meet) {
-  msri_tally *tally = meet->tally;
-  const bool timed = msri_tally_is_turn(tally), drifts = stage->motion.drift != 0;
-  double start = timed ? msri_clock_now() : 0;
-  const double fastest = msri_meet_advance(pass, stage, cells, meet);
-  if (timed) start = msri_tally_add(tally, start, &tally->kicks);
-  for (walk w = {.group = group}; drifts && is_on(&w); w.r++)
-    msri_meet_stop(pass, stage, w.row, fastest, cells, w.at, meet);
-  if (timed) msri_tally_add(tally, start, &tally->drifts);
-  return fastest;
-}
-
 /* A row of an object. */
 static void fetch_row(const msri_pass *pass, size_t row) {
   const msri_objects *o = &pass->plan->objects;
@@ -191,14 +177,16 @@ double msri_patch_run(const msri_pass *pass, const msri_group *group, bool fille
                       double *memory, msri_tally *tally, bool *same) {
   const place p = place_of(group, memory);
   double *meeting = p.rest + pulls_size(pass->ways, stride(group)), fastest = 0;
-  msri_meet meet = {.tally = tally};
+  msri_meet meet;
   if (!filled) fill(pass, group, &p);
   const msri_cells cells = cells_of(pass, group, &p);
-  if (pass->meets) meet = msri_meet_place(cells.n, group->masses, meeting, tally);
+  if (pass->meets)
+    meet = msri_meet_place(cells.n, group->masses, meeting,
+                           meeting + msri_meet_size(cells.n, group->masses), tally);
   walk next = {.group = group->next};
   for (int s = 0; s < pass->stages; s++) {
     const msri_stage *stage = &pass->stage[s];
-    const double speed = pass->meets ? step_past(pass, stage, group, &cells, &meet)
+    const double speed = pass->meets ? msri_meet_step(pass, stage, &cells, &meet)
                                      : msri_field_step(pass, stage, &cells);
     fastest = msri_worse(speed, fastest);
     fetch(pass, &next);

@@ -63,9 +63,10 @@ static size_t marks_size(size_t width) {
   return msri_round_up(MARKED * bytes, MSRI_MARGIN * sizeof(double)) / sizeof(double);
 }
 
-/* Traces are those of one row at a time. */
+/* Of all rows; a stage is that of one row at a time. */
 static size_t meet_size(size_t width, int stages) {
-  return MSRI_MEET_TRACE * wide(width) + slots(stages) * MSRI_MEET_DEBT * wide(width);
+  const size_t n = cells(width);
+  return msri_meet_stage_size(n) + slots(stages) * msri_meet_size(n, n);
 }
 
 static size_t ring_size(size_t width, int stages) {
@@ -143,13 +144,24 @@ static void take_over(const wave *w, size_t row, msri_debts *debts) {
   memcpy(debts->debt, from.debt, debts->n * sizeof *debts->debt);
 }
 
+static void open_meet(const wave *w, size_t row, msri_meet *meet) {
+  const msri_armed_rows *armed = &w->pass->state->armed;
+  const size_t at = w->object->block + row * msri_object_blocks(w->object);
+  if (w->pass->plan->contact.clearance)
+    msri_meet_open(meet, armed->gone + w->object->row + row, armed->until + at);
+  else
+    msri_meet_open(meet, meet->gone, meet->until);
+}
+
 static slot *open_row(wave *w, size_t row) {
   slot *s = &w->slot[place_of(w, row)];
   if (s->row == row) return s;
   s->row = row;
   fill(w, row, &s->at);
   s->cells = msri_field_cells(&s->at);
-  if (w->pass->meets) take_over(w, row, &s->meet.debts);
+  if (!w->pass->meets) return s;
+  open_meet(w, row, &s->meet);
+  take_over(w, row, &s->meet.debts);
   return s;
 }
 
@@ -203,20 +215,6 @@ static bool is_left_behind(const wave *w, int stage, size_t row) {
   return row + 1 == end_row(w, stage) && w->part->number + 1 < w->part->parts;
 }
 
-static double step_past(wave *w, int stage, size_t row, const msri_cells *cells) {
-  const msri_pass *pass = w->pass;
-  msri_meet *meet = &w->slot[place_of(w, row)].meet;
-  msri_tally *tally = meet->tally;
-  const bool timed = msri_tally_is_turn(tally);
-  double start = timed ? msri_clock_now() : 0;
-  const double fastest = msri_meet_advance(pass, &pass->stage[stage], cells, meet);
-  if (timed) start = msri_tally_add(tally, start, &tally->kicks);
-  if (pass->stage[stage].motion.drift != 0)
-    msri_meet_stop(pass, &pass->stage[stage], w->object->row + row, fastest, cells, 0, meet);
-  if (timed) msri_tally_add(tally, start, &tally->drifts);
-  return fastest;
-}
-
 /* The last row has none below: its own stands there. */
 static const msri_cells *cells_at(wave *w, int stage, size_t row, bool behind) {
   slot *here = open_row(w, row);
@@ -235,7 +233,8 @@ static const msri_cells *cells_at(wave *w, int stage, size_t row, bool behind) {
 static void step_row(wave *w, int stage, size_t row) {
   const msri_pass *pass = w->pass;
   const msri_cells *cells = cells_at(w, stage, row, is_left_behind(w, stage, row));
-  const double fastest = pass->meets ? step_past(w, stage, row, cells)
+  msri_meet *meet = &w->slot[place_of(w, row)].meet;
+  const double fastest = pass->meets ? msri_meet_step(pass, &pass->stage[stage], cells, meet)
                                      : msri_field_step(pass, &pass->stage[stage], cells);
   w->fastest = msri_worse(fastest, w->fastest);
 }
@@ -307,9 +306,8 @@ static void place_slots(wave *w, double *memory, msri_tally *tally) {
     s->row = none;
     s->at = msri_field_place(n, MSRI_MARGIN, w->ring + k * size);
     if (!w->pass->meets) continue;
-    double *meeting = memory + (MSRI_MEET_TRACE + k * MSRI_MEET_DEBT) * w->wide;
-    s->meet = msri_meet_place(0, w->wide, meeting, tally);
-    s->meet.trace = msri_meet_trace(w->wide, memory);
+    double *kept = memory + msri_meet_stage_size(n) + k * msri_meet_size(n, n);
+    s->meet = msri_meet_place(n, n, kept, memory, tally);
   }
 }
 

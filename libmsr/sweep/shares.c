@@ -34,8 +34,9 @@ size_t msri_shares_size(const msr_plan *plan, int ways) {
   for (size_t n = 0; n < plan->objects.n; n++) {
     const msri_object part = window(&plan->objects.object[n], 0);
     const msri_group alone = msri_group_of(&part, 1);
-    const size_t size =
-        msri_patch_size(ways, false, &alone) + MSRI_MEET_TRACE * msri_patch_cells(&alone);
+    const size_t cells = msri_patch_cells(&alone);
+    const size_t size = msri_patch_size(ways, false, &alone) + msri_meet_size(cells, 0) +
+                        msri_meet_stage_size(cells);
     if (most < size) most = size;
   }
   return most;
@@ -61,7 +62,7 @@ typedef struct subject {
   const msri_pass *pass;
   msri_cells cells;
   msri_motion motion;
-  msri_trace trace;
+  msri_lookout *watch;
 } subject;
 
 enum { PULL = MSRI_BESIDES, KERNELS }; /* after those of what acts beside the springs */
@@ -71,7 +72,7 @@ static void run(const subject *s, int which) {
   if (which == PULL)
     loops->pull(&s->cells, &s->motion);
   else if (s->pass->meets)
-    loops->trace[which](&s->cells, &s->motion, &s->trace);
+    loops->watch[which](&s->cells, &s->motion, s->watch);
   else
     loops->advance[which](&s->cells, &s->motion);
 }
@@ -130,9 +131,11 @@ void msri_shares_measure(msri_shares *s, const msri_pass *pass) {
   const double start = msri_clock_now();
   const msri_object part = choose(s, &pass->plan->objects);
   const msri_group alone = msri_group_of(&part, 1);
-  double *trace = s->memory + msri_patch_size(pass->ways, false, &alone);
+  const size_t all = msri_patch_cells(&alone);
+  double *kept = s->memory + msri_patch_size(pass->ways, false, &alone);
+  msri_meet meet = msri_meet_place(all, 0, kept, kept + msri_meet_size(all, 0), NULL);
   const subject cells = {pass, msri_patch_open(pass, &alone, s->memory), at_rest(pass),
-                         msri_meet_trace(msri_patch_cells(&alone), trace)};
+                         &meet.watch};
   double copying = (double)INFINITY;
   for (int n = 0; n < KERNELS; n++) took[n] = (double)INFINITY;
   for (int round = 0; round < ROUNDS; round++) {

@@ -27,7 +27,7 @@ typedef struct msri_swept {
   double *x, *y, *vx, *vy; /* [masses] */
   char *scratch;           /* of the terms */
   uint64_t *calls;         /* of the effects, counted up */
-  msri_armed_rows armed;   /* of the objects, if anything can be met */
+  msri_armed_rows armed;   /* of the objects, if something may be in the way */
   msri_still *still;       /* kept from stage to stage */
 } msri_swept;
 

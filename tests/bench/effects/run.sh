@@ -58,7 +58,7 @@ out_air() {
   edit '/for (int n = 0; n < 2 && (task->besides & MSRI_WITH_AIR); n++) {/,/^  }/d' \
     forces/lattice_kernel.inc
   edit '/for (int n = 0; n < 2 && m->relaxes; n++)/,+1d' sweep/meet.c
-  edit '/if (still->damps) relax(/d; /^static void relax/,/^}/d' sweep/stage.c
+  edit '/if (still->air < /d; /^static void relax/,/^}/d' sweep/stage.c
   edit '/const msri_motion \*m = &stage->motion;/d; s/const int air = .*/const int air = 0 * (stage == NULL);/' sweep/field.h
   edit 's/relax ? MSRI_WITH_AIR : 0/relax ? 0 : 0/' sweep/sweep.c
 }
@@ -71,7 +71,8 @@ out_supports() {
   edit 's/\(w->\|s->\|\b\)pass\(->\|\.\)meets/false/g' sweep/patch.c sweep/rows.c \
     sweep/shares.c
   edit 's/msri_plan_meets(plan)/false/g' sweep/sweep.c sweep/deal.c
-  edit 's/msri_meet_trace(msri_patch_cells(&alone), trace)/(msri_trace){0}/' sweep/shares.c
+  edit 's/msri_meet_\(stage_\)\?size([^()]*)/0/g' sweep/patch.c sweep/rows.c sweep/shares.c
+  edit 's/msri_meet_place(.*)/{.blocks = 0}/' sweep/shares.c
   rm contacts/supports.c contacts/kept.c contacts/located.c sweep/meet.c
 }
 
@@ -134,7 +135,7 @@ static inline size_t msri_shares_size(const msr_plan *plan, int ways) {
 static inline double msri_shares_clock(void) { return 0; }
 C
   edit '/msri_shares_measure(/d; /s->shares.drifts =/d; /msri_shares_split(/d' sweep/sweep.c
-  edit 's/msri_tally_is_turn(tally)/false/' sweep/patch.c sweep/rows.c
+  edit 's/msri_tally_is_turn(tally)/false/' sweep/meet.c
   rm sweep/shares.c
   cat > plan/meter.h <<'C'
 #include <stddef.h>
