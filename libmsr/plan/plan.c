@@ -91,6 +91,12 @@ static msr_status prepare_sweeps(msr_plan *plan, msr_error *err) {
   return msri_objects_create(plan->grid->picture, plan->neighbours, &plan->objects, err);
 }
 
+static msr_status say_attached(msr_plan *plan, const msr_scene *scene, msr_error *err) {
+  if (!scene->options.attach || plan->figures.anchors > 0) return MSR_OK;
+  return msri_notes_add(&plan->notes, err,
+                        "no mass has a black pixel beside it: nothing is attached");
+}
+
 static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan_options *options,
                           msr_error *err) {
   share_picture(plan, scene);
@@ -102,6 +108,8 @@ static msr_status compile(msr_plan *plan, const msr_scene *scene, const msr_plan
   if (status != MSR_OK) return status;
   plan->figures.springs = plan->mesh.springs.n;
   plan->figures.anchors = plan->mesh.springs.n_anchors;
+  status = say_attached(plan, scene, err);
+  if (status != MSR_OK) return status;
   const size_t n = plan->figures.masses, places = looks_at_start(scene) ? n : 0;
   double *q = msri_alloc(4 * places, sizeof *q, "the masses", err);
   if (!q) return MSR_ENOMEM;
