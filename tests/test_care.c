@@ -1,6 +1,6 @@
 /* test_care.c - a state whose energy comes from nowhere goes back to where it was sound, and on by
  * steps that keep the energy; one that is sound isn't touched.
- * link: --wrap=malloc --wrap=calloc --wrap=realloc */
+ * link: --wrap=malloc --wrap=calloc --wrap=realloc --wrap=msri_newton */
 #include "alloc.h"
 #include "files.h"
 #include "scenes.h"
@@ -381,6 +381,54 @@ static void allocations_may_fail_again_and_again(void **unused) {
   close_world(w);
 }
 
+/* ---- Equations that can't be solved */
+
+static bool unsolvable;
+
+msr_status __real_msri_newton(const void *stage, double *memory, void *object, double *d,
+                              msr_error *err);
+msr_status __wrap_msri_newton(const void *stage, double *memory, void *object, double *d,
+                              msr_error *err);
+
+msr_status __wrap_msri_newton(const void *stage, double *memory, void *object, double *d,
+                              msr_error *err) {
+  return unsolvable ? MSR_EUNSTABLE : __real_msri_newton(stage, memory, object, d, err);
+}
+
+static msr_status push_nothing(const void *self, void *scratch, const msr_view *s, double *fx,
+                               double *fy) {
+  (void)self, (void)scratch, (void)s, (void)fx, (void)fy;
+  return MSR_OK;
+}
+
+/* Then the plan's own steps do what is left, in a state that sweeps else, too: it has room for what
+ * these keep. */
+static void own_steps_are_the_last_resort(void **unused) {
+  (void)unused;
+  static const msr_force idle = {
+      .name = "nothing", .summary = "0", .add = push_nothing, .dissipative = true};
+  const msr_wind wind = {.c = 0.05, .speed = 10, .gust = 10, .gust_time = 0.1, .seed = 3};
+  uint64_t hash[2], contacts[2];
+  for (int swept = 0; swept < 2; swept++) {
+    msr_scene *scene = scene_from(room(40, 40, 20, 12), &example, &closed);
+    add_force(scene, &msr_force_wind, &wind);
+    if (!swept) add_force(scene, &idle, NULL);
+    const world w = open_world_with(scene, &automatic);
+    assert_true((w.state->sweep != NULL) == swept);
+    const msr_arrays s = msr_state_edit(w.state);
+    for (size_t i = 0; i < 240; i++) s.vx[i] = 3, s.vy[i] = -20;
+    advance(&w, 1);
+    w.state->care.on = true;
+    unsolvable = true;
+    advance(&w, 400);
+    unsolvable = false;
+    hash[swept] = msr_state_hash(w.state), contacts[swept] = msr_state_contacts(w.state);
+    close_world(w);
+  }
+  assert_true(hash[0] == hash[1] && contacts[0] > 10);
+  assert_int_equal(contacts[0], contacts[1]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_long_fall_keeps_its_energy),
@@ -398,6 +446,7 @@ int main(void) {
       cmocka_unit_test(files_and_copies_have_the_same_bits),
       cmocka_unit_test(failed_allocations_can_be_tried_again),
       cmocka_unit_test(allocations_may_fail_again_and_again),
+      cmocka_unit_test(own_steps_are_the_last_resort),
   };
   return cmocka_run_group_tests_name("care", tests, make_directory, remove_directory);
 }

@@ -12,9 +12,11 @@
 /* Of the arrays: a line of the cache and the widest vector, else loads straddle two lines. */
 enum { ALIGNMENT = 64 };
 
-/* Where arrays for implicit steps lie. */
+/* Where arrays for implicit steps lie; and, if they are of a state that sweeps else, what steps of
+ * the plan's own method take that aren't swept. */
 typedef struct room {
-  size_t solver, between, before_leap, leap;
+  size_t solver, between, before_leap, leap, work, ahead, armed;
+  bool own;
 } room;
 
 /* Where each array lies after the block's first aligned byte; `end` is after the last. */
@@ -29,6 +31,26 @@ static size_t reserve(size_t *end, size_t bytes) {
   return begin;
 }
 
+/* Bytes of what an integrator keeps, and supports. */
+static size_t work_bytes(const msr_plan *plan) {
+  const size_t vectors = plan->figures.integrator->vectors;
+  return (vectors > 0 ? vectors : 1) * 2 * plan->figures.masses * sizeof(double);
+}
+
+static size_t ahead_bytes(const msr_plan *plan) {
+  return msri_plan_settles(plan) ? 2 * plan->figures.masses * sizeof(double) : 0;
+}
+
+static size_t armed_bytes(const msr_plan *plan) {
+  if (!msri_plan_arms(plan)) return 0;
+  return msri_flock_blocks(plan->figures.masses) * sizeof(msri_armed);
+}
+
+static size_t rows_bytes(const msr_plan *plan) {
+  if (!msri_plan_arms(plan)) return 0;
+  return (plan->objects.n_rows + plan->objects.n_blocks) * sizeof(double);
+}
+
 /* The matrix if there is a graph, and what steps take that aren't the plan's own if it `leaps`. */
 static room lay_out_room(const msr_plan *plan, const msri_graph *graph, bool leaps, size_t *end) {
   const size_t vector = 2 * plan->figures.masses * sizeof(double);
@@ -38,6 +60,10 @@ static room lay_out_room(const msr_plan *plan, const msri_graph *graph, bool lea
   r.between = reserve(end, leaps || plan->middle ? 2 * vector : 0);
   r.before_leap = reserve(end, leaps ? 2 * vector : 0);
   r.leap = reserve(end, leaps ? msr_integrator_energy_momentum.vectors * vector : 0);
+  r.own = leaps && msri_plan_sweeps(plan);
+  r.work = reserve(end, r.own ? work_bytes(plan) : 0);
+  r.ahead = reserve(end, r.own ? ahead_bytes(plan) : 0);
+  r.armed = reserve(end, r.own ? armed_bytes(plan) : 0);
   return r;
 }
 
@@ -47,29 +73,25 @@ static void place_room(msr_state *state, const room *r, const msri_graph *graph,
   state->leap.before = (void *)(arrays + r->before_leap);
   state->leap.vector = (void *)(arrays + r->leap);
   if (graph) state->stiffness = msri_stiffness_place(graph, &now, arrays + r->solver);
-}
-
-static size_t armed_bytes(const msr_plan *plan) {
-  const size_t alone = msri_flock_blocks(plan->figures.masses) * sizeof(msri_armed);
-  const size_t swept = (plan->objects.n_rows + plan->objects.n_blocks) * sizeof(double);
-  if (!msri_plan_arms(plan)) return 0;
-  return msri_plan_sweeps(plan) && swept > alone ? swept : alone;
+  if (!r->own) return;
+  state->work.vector = (void *)(arrays + r->work);
+  state->ahead = (void *)(arrays + r->ahead);
+  state->armed = (void *)(arrays + r->armed);
 }
 
 static layout lay_out(const msr_plan *plan) {
   const size_t vector = 2 * plan->figures.masses * sizeof(double);
   const bool sweeps = msri_plan_sweeps(plan);
-  const size_t vectors = sweeps ? 0 : plan->figures.integrator->vectors;
   layout l;
   size_t end = 0;
   reserve(&end, sizeof(msr_state));
   l.room = lay_out_room(plan, plan->graph, plan->figures.leaps, &end);
   l.q = reserve(&end, vector);
   l.v = reserve(&end, vector);
-  l.work = reserve(&end, (vectors > 0 || sweeps ? vectors : 1) * vector);
+  l.work = reserve(&end, sweeps ? 0 : work_bytes(plan));
   l.before = reserve(&end, msri_plan_bounces(plan) ? 2 * vector : 0);
-  l.ahead = reserve(&end, msri_plan_settles(plan) && !sweeps ? vector : 0);
-  l.armed = reserve(&end, armed_bytes(plan));
+  l.ahead = reserve(&end, sweeps ? 0 : ahead_bytes(plan));
+  l.armed = reserve(&end, sweeps ? rows_bytes(plan) : armed_bytes(plan));
   l.middle = reserve(&end, plan->midpoint ? 2 * vector : 0);
   l.drive = reserve(&end, plan->followed ? vector : 0);
   l.discs = reserve(&end, plan->discs ? msri_discs_room(plan->discs) : 0);
@@ -101,6 +123,7 @@ static msr_status open_integrator(msr_state *state, msr_error *err) {
 
 msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *err) {
   const layout l = lay_out(plan);
+  const bool sweeps = msri_plan_sweeps(plan);
   char *block = msri_alloc(1, block_bytes(&l), "a state", err);
   if (!block) return MSR_ENOMEM;
   char *arrays = first_aligned(block);
@@ -109,10 +132,10 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
       .plan = plan,
       .q = (void *)(arrays + l.q),
       .v = (void *)(arrays + l.v),
-      .work = {.vector = (void *)(arrays + l.work)},
+      .work = {.vector = sweeps ? NULL : (void *)(arrays + l.work)},
       .before = (void *)(arrays + l.before),
-      .ahead = (void *)(arrays + l.ahead),
-      .armed = (void *)(arrays + l.armed),
+      .ahead = sweeps ? NULL : (void *)(arrays + l.ahead),
+      .armed = sweeps ? NULL : (void *)(arrays + l.armed),
       .rows = {(void *)(arrays + l.armed),
                (void *)(arrays + l.armed + plan->objects.n_rows * sizeof(double))},
       .care = {.kept = (void *)(arrays + l.kept)},
@@ -127,7 +150,7 @@ msr_status msr_state_create(const msr_plan *plan, msr_state **state, msr_error *
   const size_t n = plan->figures.masses;
   msri_plan_start(plan, made->q, made->q + n, made->v, made->v + n);
   place_room(made, &l.room, plan->graph, arrays);
-  msr_status status = msri_plan_sweeps(plan) ? msri_sweep_create(plan, &made->sweep, err) : MSR_OK;
+  msr_status status = sweeps ? msri_sweep_create(plan, &made->sweep, err) : MSR_OK;
   if (status == MSR_OK) status = open_integrator(made, err);
   if (status == MSR_OK) {
     *state = made;
@@ -171,7 +194,7 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
   const layout l = lay_out(from->plan);
   to->iteration = from->iteration;
   to->substep = from->substep;
-  to->fresh = from->fresh && !from->plan->figures.integrator->remembers;
+  to->fresh = from->fresh && !from->plan->figures.integrator->remembers && !from->care.on;
   to->known.q = NULL;
   to->contacts = from->contacts;
   to->evaluations = from->evaluations;
@@ -188,6 +211,7 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
   to->care.lost = from->care.lost;
   memcpy(to->q, from->q, l.end - l.q);
   if (to->sweep) msri_sweep_wake(to->sweep);
+  if (to->sweep && to->armed) memset(to->armed, 0, armed_bytes(to->plan));
 }
 
 void msri_state_keep(const msr_state *state, double *kept) {
@@ -212,7 +236,10 @@ void msri_state_put_back(msr_state *state, const double *kept) {
   msri_state_disarm(state);
 }
 
-void msri_state_disarm(msr_state *state) { memset(state->armed, 0, armed_bytes(state->plan)); }
+void msri_state_disarm(msr_state *state) {
+  if (state->armed) memset(state->armed, 0, armed_bytes(state->plan));
+  if (state->sweep) memset(state->rows.gone, 0, rows_bytes(state->plan));
+}
 
 void msri_state_touched(msr_state *state) {
   moved(state);

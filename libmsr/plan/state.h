@@ -65,13 +65,14 @@ struct msr_state {
   uint64_t frames;         /* of a run that went to the sinks */
   const msr_force *failed; /* the force whose status stopped the last step */
   msri_guard guard;
-  msr_workspace work;   /* vector [integrator->vectors, 1 at least][2n]; none with sweep */
+  msr_workspace work;   /* vector [integrator->vectors, 1 at least][2n] */
   double *q, *v;        /* x[n], y[n]; vx[n], vy[n] */
   double *before;       /* [4n] if the library bounces: q, v before the step */
-  double *ahead;        /* [2n] if the plan settles, without sweep: a at the end of a step */
+  double *ahead;        /* [2n] if the plan settles: a at the end of a step */
   msri_debts debts;     /* in contacts.c; else empty */
-  msri_armed *armed;    /* if the plan arms, without sweep: of all masses, */
-  msri_armed_rows rows; /* with sweep: of the objects; the same memory */
+  msri_armed *armed;    /* of all masses, if the plan arms; these three NULL in a state that sweeps,
+                           until it takes steps with care */
+  msri_armed_rows rows; /* of the objects, if the plan arms and sweeps */
   msri_known known;
   double end; /* of the step under way [s] */
   msri_effort effort;
