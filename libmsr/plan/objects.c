@@ -101,12 +101,15 @@ static void number(const finds *f, extent *of, msri_objects *o) {
     of[s].number = o->n;
     of[s].next = next;
     const size_t rows = of[s].bottom - of[s].top + 1;
-    msri_object *object = &o->object[o->n++];
-    *object = (msri_object){o->n_rows, rows, of[s].right - of[s].left, of[s].masses, o->n_blocks};
-    o->n_blocks += rows * msri_object_blocks(object);
+    o->object[o->n++] = (msri_object){o->n_rows, rows, of[s].right - of[s].left, of[s].masses};
     o->n_rows += rows;
     next += of[s].pieces;
   }
+}
+
+/* Blocks that a piece has cells in. */
+static size_t blocks_of(const msri_piece *piece) {
+  return (piece->column + piece->count - 1) / MSRI_LANES - piece->column / MSRI_LANES + 1;
 }
 
 /* Pieces by object, and the first of each row: an object has one in each of its rows. */
@@ -117,9 +120,13 @@ static void arrange(const finds *f, extent *of, msri_objects *o) {
     const size_t row = o->object[e->number].row + (from->row - e->top);
     const bool first = s == f->parent[s] || o->row[row] == SIZE_MAX;
     if (first) o->row[row] = e->next;
-    o->piece[e->next++] = (msri_piece){from->first, from->column - e->left, from->count};
+    o->piece[e->next++] = (msri_piece){from->first, from->column - e->left, from->count, 0};
   }
   o->row[o->n_rows] = f->n;
+  for (msri_piece *piece = o->piece; piece < o->piece + f->n; piece++) {
+    piece->block = o->n_blocks;
+    o->n_blocks += blocks_of(piece);
+  }
 }
 
 static size_t count_rows(const finds *f, const extent *of, size_t *objects) {

@@ -8,6 +8,7 @@
 typedef struct msri_piece {
   size_t first;
   uint32_t column, count;
+  size_t block; /* of MSRI_LANES columns of the object: the first of the piece's */
 } msri_piece;
 
 /* Rows row .. row+rows-1 of msri_objects.row. */
@@ -15,7 +16,6 @@ typedef struct msri_object {
   size_t row, rows;
   size_t width; /* in columns, of the smallest rectangle around it */
   size_t masses;
-  size_t block; /* the first: each row has msri_object_blocks */
 } msri_object;
 
 typedef struct msri_objects {
@@ -24,11 +24,6 @@ typedef struct msri_objects {
   msri_piece *piece;   /* [row[n_rows]] from the left */
   size_t n, n_rows, n_blocks;
 } msri_objects;
-
-/* Blocks of MSRI_LANES cells in each row. */
-static inline size_t msri_object_blocks(const msri_object *object) {
-  return (object->width + MSRI_LANES - 1) / MSRI_LANES;
-}
 
 /* Those of a picture, with springs to 4 or 8 neighbours. MSR_ENOMEM: then nothing is left. */
 msr_status msri_objects_create(const msr_picture *picture, int neighbours, msri_objects *objects,

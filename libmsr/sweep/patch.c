@@ -181,8 +181,8 @@ double msri_patch_run(const msri_pass *pass, const msri_group *group, bool fille
   if (!filled) fill(pass, group, &p);
   const msri_cells cells = cells_of(pass, group, &p);
   if (pass->meets)
-    meet = msri_meet_place(cells.n, group->masses, meeting,
-                           meeting + msri_meet_size(cells.n, group->masses), tally);
+    meet = msri_meet_place(cells.n, group->masses, meeting, meeting + msri_meet_stage_size(cells.n),
+                           tally);
   walk next = {.group = group->next};
   for (int s = 0; s < pass->stages; s++) {
     const msri_stage *stage = &pass->stage[s];

@@ -144,13 +144,14 @@ static void take_over(const wave *w, size_t row, msri_debts *debts) {
   memcpy(debts->debt, from.debt, debts->n * sizeof *debts->debt);
 }
 
-static void open_meet(const wave *w, size_t row, msri_meet *meet) {
+/* What is known of the row's masses is the state's, if clearances are. */
+static void open_near(const wave *w, size_t row, msri_near *near) {
+  const msri_objects *o = &w->pass->plan->objects;
   const msri_armed_rows *armed = &w->pass->state->armed;
-  const size_t at = w->object->block + row * msri_object_blocks(w->object);
-  if (w->pass->plan->contact.clearance)
-    msri_meet_open(meet, armed->gone + w->object->row + row, armed->until + at);
-  else
-    msri_meet_open(meet, meet->gone, meet->until);
+  const bool arms = w->pass->plan->contact.clearance;
+  const size_t at = w->object->row + row, block = o->piece[o->row[at]].block;
+  msri_near_open(near, cells(w->object->width), arms ? armed->gone + at : near->gone,
+                 arms ? armed->until + block : near->until);
 }
 
 static slot *open_row(wave *w, size_t row) {
@@ -160,7 +161,7 @@ static slot *open_row(wave *w, size_t row) {
   fill(w, row, &s->at);
   s->cells = msri_field_cells(&s->at);
   if (!w->pass->meets) return s;
-  open_meet(w, row, &s->meet);
+  open_near(w, row, &s->meet.near);
   take_over(w, row, &s->meet.debts);
   return s;
 }
@@ -307,7 +308,7 @@ static void place_slots(wave *w, double *memory, msri_tally *tally) {
     s->at = msri_field_place(n, MSRI_MARGIN, w->ring + k * size);
     if (!w->pass->meets) continue;
     double *kept = memory + msri_meet_stage_size(n) + k * msri_meet_size(n, n);
-    s->meet = msri_meet_place(n, n, kept, memory, tally);
+    s->meet = msri_meet_place(n, n, memory, kept, tally);
   }
 }
 

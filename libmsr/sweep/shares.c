@@ -132,8 +132,8 @@ void msri_shares_measure(msri_shares *s, const msri_pass *pass) {
   const msri_object part = choose(s, &pass->plan->objects);
   const msri_group alone = msri_group_of(&part, 1);
   const size_t all = msri_patch_cells(&alone);
-  double *kept = s->memory + msri_patch_size(pass->ways, false, &alone);
-  msri_meet meet = msri_meet_place(all, 0, kept, kept + msri_meet_size(all, 0), NULL);
+  double *stage = s->memory + msri_patch_size(pass->ways, false, &alone);
+  msri_meet meet = msri_meet_place(all, 0, stage, stage + msri_meet_stage_size(all), NULL);
   const subject cells = {pass, msri_patch_open(pass, &alone, s->memory), at_rest(pass),
                          &meet.watch};
   double copying = (double)INFINITY;
