@@ -164,8 +164,8 @@ static void step_tested(trial *t) {
 
 /* A mass is where there is no place, or goes where there is none. */
 static void spoil(trial *t, uint64_t *dice) {
-  static const double odd[] = {NO_NUMBER, INFINITE, -INFINITE, DBL_MAX,
-                               1e200,     0x1p22,   -0x1p23,   0x1p52};
+  static const double odd[] = {NO_NUMBER, NO_NUMBER, NO_NUMBER, NO_NUMBER, INFINITE, -INFINITE,
+                               DBL_MAX,   1e200,     0x1p22,    -0x1p23,   0x1p52};
   const size_t k = random_below(dice, CELLS), what = random_below(dice, 4);
   double *const watched[] = {t->watched.x, t->watched.y, t->watched.vx, t->watched.vy};
   double *const tested[] = {t->tested.x, t->tested.y, t->tested.vx, t->tested.vy};
@@ -205,7 +205,7 @@ static void no_mass_passes_untested(void **state) {
       if (sets_out) set_out(&t, &dice);
       set_out_before = sets_out;
       if (random_below(&dice, 8) == 0) msri_near_open(&t.meet.near, CELLS, &t.gone, t.until);
-      if (n % 5 == 0 && random_below(&dice, 100) == 0) spoil(&t, &dice);
+      if (n % 3 == 0 && random_below(&dice, 100) == 0) spoil(&t, &dice);
       t.stage.motion.drift = random_below(&dice, 20) ? 0.002 : drifts[random_below(&dice, 5)];
       step_tested(&t);
       msri_meet_step(&t.pass, &t.stage, &cells, &t.meet);

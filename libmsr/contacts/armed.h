@@ -5,7 +5,9 @@
  * h max |u|. Once what is left doesn't cover a step, they are tested again, in that very step, so
  * that none is missed; and are told anew, or, if it wouldn't last, some steps later.
  *
- * Whoever moves them otherwise than by these drifts, or takes other masses, clears it: all 0. */
+ * Whoever moves them otherwise than by these drifts, or takes other masses, clears it: all 0.
+ *
+ * Where rows are swept the same is done by blocks, see sweep/near.h. */
 #ifndef MSRI_ARMED_H
 #define MSRI_ARMED_H
 
@@ -47,10 +49,8 @@ static inline void msri_armed_earn(msri_armed *armed, double path, double cleara
 uint64_t msri_armed_drift(msri_armed *armed, const msri_contact *contact, double h,
                           const msri_flock *flock, msri_debts *debts);
 
-/* ---- Rows of blocks */
-
-/* How far the fastest of each row may have gone [px], and how far the masses of each block can go
- * and meet nothing, counted so: at least. In the order of the objects' rows and blocks. */
+/* What a state keeps of that: `gone` of each row of the objects, and `until` of the blocks in which
+ * pieces of it lie. */
 typedef struct msri_armed_rows {
   double *gone, *until;
 } msri_armed_rows;

@@ -4,7 +4,6 @@
 #define MSRI_LATTICE_H
 
 #include "base/base.h"
-#include "base/machine.h"
 
 /* Springs that begin at a cell: to its right, and to the cells below it, right below it, one to the
  * left, one to the right. Along a row all are in the order of their cells. */
@@ -52,7 +51,7 @@ typedef struct msri_trace {
 
 /* A look at masses that something may be in the way of. In blocks that are near it those are told
  * that leave their pixel, elsewhere those that go faster than they may, and what is no number.
- * Blocks that are near, or tell, leave their trace. */
+ * Those that are near, or told, leave their trace; others may. */
 typedef struct msri_lookout {
   const bool *near; /* [n / MSRI_LANES] */
   uint8_t *told;    /* [n / MSRI_LANES]: a bit for each of a block, added to what is there */

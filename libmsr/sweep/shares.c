@@ -77,7 +77,7 @@ static void run(const subject *s, int which) {
     loops->advance[which](&s->cells, &s->motion);
 }
 
-/* Of once all cells. */
+/* Of once all cells; past supports of cells of which none is near. */
 static double time_of(const subject *s, int which) {
   const size_t times = 1 + CELLS / s->cells.n;
   const double start = msri_clock_now();

@@ -60,11 +60,13 @@ static void relax(const msri_course *c, double t, const msri_swept *state, msri_
   const msr_view s = msri_plan_view(c->plan, t, NULL, NULL);
   for (int n = 0; n < 2; n++) {
     if (share[n] == 0) continue;
-    if (n > 0 && share[n] == share[0])
-      m->keep[n] = m->keep[0], memcpy(m->push[n], m->push[0], sizeof m->push[n]);
-    else
+    if (n > 0 && share[n] == share[0]) { // the same air for the same time
+      m->keep[n] = m->keep[0];
+      memcpy(m->push[n], m->push[0], sizeof m->push[n]);
+    } else {
       m->keep[n] = air->force->relax(air->self, state->scratch + air->scratch, &s,
                                      share[n] * c->plan->figures.h, m->push[n]);
+    }
     state->calls[still->air]++;
     m->relaxes = true;
     m->pushes |= m->push[n][0] != 0 || m->push[n][1] != 0;
