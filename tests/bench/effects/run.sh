@@ -73,7 +73,7 @@ out_supports() {
   edit 's/msri_plan_meets(plan)/false/g' sweep/sweep.c sweep/deal.c
   edit 's/msri_meet_\(stage_\)\?size([^()]*)/0/g' sweep/patch.c sweep/rows.c sweep/shares.c
   edit 's/msri_meet_place(.*)/{.blocks = 0}/' sweep/shares.c
-  rm contacts/supports.c contacts/kept.c contacts/located.c sweep/meet.c
+  rm contacts/supports.c contacts/kept.c contacts/located.c sweep/meet.c sweep/near.c
 }
 
 out_collisions() {
