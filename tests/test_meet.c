@@ -190,6 +190,15 @@ static void set_out(trial *t, uint64_t *dice) {
   }
 }
 
+/* The sign of what is no number is the compiler's. */
+static void assert_same(const crowd *a, const crowd *b) {
+  const double *const of[2][4] = {{a->x, a->y, a->vx, a->vy}, {b->x, b->y, b->vx, b->vy}};
+  for (int what = 0; what < 4; what++)
+    for (size_t k = 0; k < SIZE; k++)
+      if (!isnan(of[0][what][k]) || !isnan(of[1][what][k]))
+        assert_memory_equal(&of[0][what][k], &of[1][what][k], sizeof(double));
+}
+
 static void no_mass_passes_untested(void **state) {
   (void)state;
   static const double drifts[] = {0, 0.001, -0.002, 0.02, 1e-300};
@@ -209,7 +218,7 @@ static void no_mass_passes_untested(void **state) {
       t.stage.motion.drift = random_below(&dice, 20) ? 0.002 : drifts[random_below(&dice, 5)];
       step_tested(&t);
       msri_meet_step(&t.pass, &t.stage, &cells, &t.meet);
-      assert_memory_equal(&t.watched, &t.tested, sizeof t.watched);
+      assert_same(&t.watched, &t.tested);
       assert_int_equal(t.tally.met, t.met);
       for (size_t b = 0; b < t.n_blocks; b++)
         spared += !t.meet.near.block[t.block[b].cell / MSRI_LANES];
