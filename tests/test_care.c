@@ -401,6 +401,22 @@ static msr_status push_nothing(const void *self, void *scratch, const msr_view *
   return MSR_OK;
 }
 
+/* A state of the same plan that knew its masses far from any wall takes over, and goes on. */
+static void assert_copy_goes_on(const world *w) {
+  world other = *w;
+  must(msr_state_create(w->plan, &other.state, &why));
+  const msr_arrays s = msr_state_edit(other.state);
+  for (size_t i = 0; i < 240; i++) s.y[i] -= 14;
+  advance(&other, 1);
+  other.state->care.on = true;
+  advance(&other, 3);
+  msr_state_copy(other.state, w->state);
+  advance(&other, 400);
+  advance(w, 400);
+  assert_true(msr_state_hash(other.state) == msr_state_hash(w->state));
+  msr_state_free(other.state);
+}
+
 /* Then the plan's own steps do what is left, in a state that sweeps else, too: it has room for what
  * these keep. */
 static void own_steps_are_the_last_resort(void **unused) {
@@ -420,7 +436,8 @@ static void own_steps_are_the_last_resort(void **unused) {
     advance(&w, 1);
     w.state->care.on = true;
     unsolvable = true;
-    advance(&w, 400);
+    advance(&w, 190);
+    assert_copy_goes_on(&w);
     unsolvable = false;
     hash[swept] = msr_state_hash(w.state), contacts[swept] = msr_state_contacts(w.state);
     close_world(w);

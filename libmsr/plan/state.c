@@ -194,7 +194,7 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
   const layout l = lay_out(from->plan);
   to->iteration = from->iteration;
   to->substep = from->substep;
-  to->fresh = from->fresh && !from->plan->figures.integrator->remembers && !from->care.on;
+  to->fresh = from->fresh && !from->plan->figures.integrator->remembers;
   to->known.q = NULL;
   to->contacts = from->contacts;
   to->evaluations = from->evaluations;
@@ -211,7 +211,6 @@ void msr_state_copy(msr_state *to, const msr_state *from) {
   to->care.lost = from->care.lost;
   memcpy(to->q, from->q, l.end - l.q);
   if (to->sweep) msri_sweep_wake(to->sweep);
-  if (to->sweep && to->armed) memset(to->armed, 0, armed_bytes(to->plan));
 }
 
 void msri_state_keep(const msr_state *state, double *kept) {
