@@ -220,8 +220,8 @@ typedef struct msr_force {
    * such a one. */
   void (*uniform)(const void *self, const msr_view *s, double *f);
   /* For a flow that is the same for all equal masses: v = keep v + push in a time h [s], exactly as
-   * flow() would; it fills push[2], x and y, and returns keep. Only t, m and n of s are given.
-   * NULL: likewise. */
+   * flow() would; it fills push[2], x and y, and returns keep. Only t, m and n of s are given; for
+   * the same t and h it may be asked once for several flows. NULL: likewise. */
   double (*relax)(const void *self, void *scratch, const msr_view *s, double h, double *push);
   /* For what drives, neither dissipative nor conservative: the most power that it can give at s->t,
    * whatever the velocities [kg px^2/s^3]; it may be called after every step. NULL: for the guard
